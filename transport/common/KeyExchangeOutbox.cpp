@@ -71,12 +71,32 @@ void KeyExchangeOutbox::ForgetOldest()
     const auto oldest = std::min_element(_peers.begin(), _peers.end(),
                                          [](const auto &one, const auto &other)
                                          { return one.second.TouchedAt < other.second.TouchedAt; });
-    _unanswered -= oldest->second.Unanswered;
-    for (const Keys &keys : oldest->second.KeysWaiting)
+    Forget(oldest);
+}
+
+void KeyExchangeOutbox::Forget(std::map<KeyExchange::Prefix, Peer>::iterator peer)
+{
+    _unanswered -= peer->second.Unanswered;
+    for (const Keys &keys : peer->second.KeysWaiting)
     {
         _waiting -= keys.What.Bytes.size();
     }
-    _peers.erase(oldest);
+    _peers.erase(peer);
+}
+
+void KeyExchangeOutbox::Forget(const KeyExchange::Prefix &peer)
+{
+    if (const auto found = _peers.find(peer); found != _peers.end())
+    {
+        Forget(found);
+    }
+}
+
+bool KeyExchangeOutbox::IsWaiting(const KeyExchange::Prefix &peer) const
+{
+    const auto found = _peers.find(peer);
+    return found != _peers.end() && found->second.Waiting &&
+           found->second.Waiting->What != found->second.Said;
 }
 
 KeyExchangeOutbox::Peer &KeyExchangeOutbox::PeerOf(const KeyExchange::Prefix &name, TimePoint now)

@@ -103,6 +103,11 @@ public:
     // Returns the datagrams to send now.
     std::vector<Datagram> TakeDue(TimePoint now);
 
+    // True if a message of the handshake with that peer waits that is not a repetition of the last one.
+    bool IsWaiting(const KeyExchange::Prefix &peer) const;
+    // Drops all that waits for a peer: the exchange begins anew.
+    void Forget(const KeyExchange::Prefix &peer);
+
     std::size_t Window() const { return _window; }
     // Bytes that are sent and not answered.
     std::size_t Unanswered() const { return _unanswered; }
@@ -177,6 +182,7 @@ private:
 
     Peer &PeerOf(const KeyExchange::Prefix &name, TimePoint now);
     void ForgetOldest();
+    void Forget(std::map<KeyExchange::Prefix, Peer>::iterator peer);
     // True if a datagram that is protected as a whole must wait.
     bool IsHeld(const KeyExchange &what, TimePoint now) const;
     void Exchanged(Peer &peer, TimePoint now);

@@ -26,4 +26,9 @@ void PeerProof::Refused(const std::string &node) const
     _log->Stranger(node);
 }
 
+void PeerProof::Unfinished(const std::string &node) const
+{
+    _log->AuthenticationFailed(node);
+}
+
 }  // namespace Rabit

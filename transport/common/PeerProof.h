@@ -33,6 +33,8 @@ public:
     // Logs that the vendor has refused the certificate or the permissions of a participant that calls itself
     // `node`; `node` is empty if its name is unknown.
     void Refused(const std::string &node) const;
+    // Logs that the authentication of a participant has come to no end and begins anew; `node` as above.
+    void Unfinished(const std::string &node) const;
 
 private:
     const std::optional<TransportSecurity> _security;

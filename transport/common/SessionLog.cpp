@@ -119,6 +119,17 @@ void SessionLog::Stranger(const std::string &node) noexcept
           });
 }
 
+void SessionLog::AuthenticationFailed(const std::string &node) noexcept
+{
+    Count(_authenticationFailures,
+          [&]
+          {
+              return "the exchange of keys with " +
+                     (node.empty() ? std::string("a participant") : "one that calls itself " + node) +
+                     " came to no end: both sides begin anew";
+          });
+}
+
 void SessionLog::OtherLevel(const std::string &node) noexcept
 {
     Count(_otherLevels,

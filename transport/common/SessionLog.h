@@ -34,6 +34,8 @@ public:
     void Impostor(const std::string &node) noexcept;
     // The certificate or the permissions of a participant that calls itself `node` were refused.
     void Stranger(const std::string &node) noexcept;
+    // No keys were exchanged with a participant that calls itself `node`; both sides begin anew.
+    void AuthenticationFailed(const std::string &node) noexcept;
     // A participant that calls itself `node` is protected less, or more, than this node.
     void OtherLevel(const std::string &node) noexcept;
     void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }
@@ -87,6 +89,7 @@ private:
     std::atomic<std::uint64_t> _malformedDatagrams{0};
     std::atomic<std::uint64_t> _impostors{0};
     std::atomic<std::uint64_t> _strangers{0};
+    std::atomic<std::uint64_t> _authenticationFailures{0};
     std::atomic<std::uint64_t> _otherLevels{0};
     Sent _discovery;
     Sent _samples;

@@ -37,6 +37,7 @@ struct Found
     Fnv1a Digest;
     Fnv1a DigestWithoutLease;
     std::vector<HostAddress> Hosts;
+    std::vector<std::uint64_t> Addresses;
     bool ListensToGroup = false;
     bool BestEffort = false;
     bool HasCard = false;
@@ -170,6 +171,26 @@ std::optional<HostAddress> HostOf(RtpsReader locator)
     return host;
 }
 
+// A UDP address with its use, as in SignedAddresses; empty for other locators.
+std::optional<std::uint64_t> AddressOf(std::uint16_t use, RtpsReader locator)
+{
+    const auto host = HostOf(locator);
+    if (!host)
+    {
+        return std::nullopt;
+    }
+    locator.U32();  // kind
+    const std::uint64_t port = locator.U32() & 0xffff;
+    const std::uint64_t address = RtpsReader(*host, false).U32();
+    return std::uint64_t{use} << 48 | address << 16 | port;
+}
+
+// True for the addresses at which a participant itself can be reached.
+bool IsUnicast(std::uint16_t id)
+{
+    return id == DefaultUnicastLocator || id == MetatrafficUnicastLocator;
+}
+
 // Size that the vendor expects, for participants and endpoints alike: it refuses another size or reads past
 // the end.
 std::size_t FixedSize(std::uint16_t id)
@@ -279,9 +300,13 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
             {
                 return false;
             }
-            if (id == DefaultUnicastLocator || id == MetatrafficUnicastLocator)
+            if (IsUnicast(id))
             {
                 found.AddHost(HostOf(value));
+                if (const auto address = AddressOf(id, value))
+                {
+                    found.Addresses.push_back(*address);
+                }
             }
             found.ListensToGroup = found.ListensToGroup || id == DefaultMulticastLocator;
             return true;
@@ -370,12 +395,14 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
         if (!parameter)
         {
             const bool hasCard = writer == ParticipantWriter && found.HasCard;
+            std::sort(found.Addresses.begin(), found.Addresses.end());
             return IsComplete(writer, found, content)
                        ? std::optional(
                              Announcement{.Subject = found.Subject,
                                           .Digest = (hasCard ? found.DigestWithoutLease : found.Digest).Sum(),
                                           .IsBestEffort = found.BestEffort,
                                           .Hosts = std::move(found.Hosts),
+                                          .Addresses = std::move(found.Addresses),
                                           .ListensToGroup = found.ListensToGroup,
                                           .HasCard = hasCard})
                        : std::nullopt;
@@ -400,6 +427,10 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
             if (!CheckSecurity(id, RtpsReader(value, littleEndian), wanted))
             {
                 return std::nullopt;
+            }
+            if (wanted && writer == ParticipantWriter)
+            {
+                found.Digested(id, value);
             }
         }
         if (!wanted)
@@ -431,6 +462,26 @@ std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &se
                                                                       : std::nullopt;
     }
     return CheckParameters(writer, sender, payload, secured, Content::Announcement, lease);
+}
+
+std::vector<std::uint64_t> SignedAddresses(std::span<const std::uint8_t> handshake)
+{
+    // 9.3.2.5.1: a big-endian list of parameters without an encapsulation.
+    RtpsReader list(BinaryPropertyOf(handshake, "c.pdata"), false);
+    std::vector<std::uint64_t> found;
+    while (const auto parameter = TakeParameter(list))
+    {
+        const RtpsReader value(parameter->Value, false);
+        if (IsUnicast(parameter->Id) && IsLocator(value) && found.size() < MostLocators)
+        {
+            if (const auto address = AddressOf(parameter->Id, value))
+            {
+                found.push_back(*address);
+            }
+        }
+    }
+    std::sort(found.begin(), found.end());
+    return found;
 }
 
 bool CheckKey(EntityId writer, const GuidPrefix &sender, std::span<std::uint8_t> payload)

@@ -17,12 +17,15 @@ struct Announcement
 {
     // The participant, or the endpoint; 0 on the topic of liveliness.
     EntityId Subject = 0;
-    // Participant: hash of its addresses. Endpoint: hash of all parameters that we use.
+    // Participant: hash of its addresses, and of what it says of its security. Endpoint: hash of all
+    // parameters that we use.
     std::uint64_t Digest = 0;
     // Writer: it is best effort.
     bool IsBestEffort = false;
     // Participant: the addresses at which it says it can be reached.
     std::vector<HostAddress> Hosts{};
+    // Participant: the same, each with its port and its use, as in SignedAddresses.
+    std::vector<std::uint64_t> Addresses{};
     // Participant: it listens to a multicast group for samples (PID_DEFAULT_MULTICAST_LOCATOR).
     bool ListensToGroup = false;
     // Participant: it exchanges cards (rtps/Meeting.h). Its digest then omits the lease, which the reader of
@@ -49,6 +52,11 @@ enum class Lease
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
                                            std::span<std::uint8_t> payload, bool secured,
                                            Lease lease = Lease::Bounded);
+
+// The addresses that a sound message of a handshake signs (OMG DDS Security 1.1, 9.3.2.5: `c.pdata` holds the
+// sender's announcement): for each UDP address its use, IPv4 host and port, in one number. Sorted; empty if
+// the message holds none.
+std::vector<std::uint64_t> SignedAddresses(std::span<const std::uint8_t> handshake);
 
 // Checks the payload of a sample that ends something: a key alone. Returns true if it is whole and names the
 // sender itself or one of its endpoints. Fast DDS takes a payload of up to 16 bytes for a key hash, and

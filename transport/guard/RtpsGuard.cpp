@@ -351,7 +351,14 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     }
     if (delivery.Writer == HandshakeWriter)
     {
-        return delivery.Alive && IsGenericMessage(delivery.Payload) ? Verdict::Pass : Verdict::Drop;
+        if (!delivery.Alive || !IsGenericMessage(delivery.Payload))
+        {
+            return Verdict::Drop;
+        }
+        return _authentication == nullptr ||
+                       _authentication->Signs(passage.Sender, SignedAddresses(delivery.Payload))
+                   ? Verdict::Pass
+                   : Verdict::Refuse;
     }
     if (!EndsItsOwn(delivery, passage.Sender))
     {
@@ -385,7 +392,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     }
     if (delivery.Alive && delivery.Writer == ParticipantWriter)
     {
-        return JudgeParticipant(*announcement, passage);
+        return JudgeParticipant(*announcement, delivery.First, passage);
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
     if (_mode == Mode::Full && delivery.Alive && isEndpoint && _peers.Hears(passage.Sender, passage.Now) &&
@@ -397,7 +404,8 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     return Verdict::Pass;
 }
 
-RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement, const Passage &passage)
+RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement, std::int64_t number,
+                                               const Passage &passage)
 {
     if (_goodbyes->Has(passage.Sender, passage.Now))
     {
@@ -413,8 +421,12 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
             return Verdict::Ignore;
         }
     }
-    // In the other modes participants are only counted: addresses come another way, or with a proof later.
-    if (!_peers.Announced(passage.Sender, _mode == Mode::Full ? announcement.Digest : 0, passage.Now))
+    // In the other modes participants are only counted: addresses come another way, or are proven later.
+    if (!_peers.Announced(passage.Sender, _mode == Mode::Full ? announcement.Digest : 0, passage.Now) ||
+        (_authentication != nullptr && isFromNetwork &&
+         !_authentication->Announced(
+             passage.Sender,
+             {.Digest = announcement.Digest, .Addresses = announcement.Addresses, .Number = number})))
     {
         return Verdict::Refuse;
     }

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "guard/AnnouncementReplies.h"
+#include "guard/AuthenticationThread.h"
 #include "guard/DeliveryCheck.h"
 #include "guard/DiscoveryFragments.h"
 #include "guard/KnownPeers.h"
@@ -70,6 +71,9 @@ public:
     // an observer, announcements of participants that have a card are not delivered: the observer sees to it
     // that the vendor learns of them.
     void SetObserver(PeerObserver &observer) { _observer = &observer; }
+    // Sets what is told of announcements and handshakes, and decides with which of them the vendor begins an
+    // authentication. For Mode::Protected; as for SetObserver.
+    void SetAuthentication(AuthenticationThread &authentication) { _authentication = &authentication; }
     // True if a participant whose announcement was admitted has announced that address.
     bool IsKnownAt(const GuidPrefix &peer, const HostAddress &from);
     // When a participant was last heard; empty: its announcement has not been admitted.
@@ -136,7 +140,7 @@ private:
     bool IsForOthers(const Passage &passage) const;
     // True if the observer handles this instead of the network.
     bool IsReplayed(const Delivery &delivery, const Passage &passage) const;
-    Verdict JudgeParticipant(const Announcement &announcement, const Passage &passage);
+    Verdict JudgeParticipant(const Announcement &announcement, std::int64_t number, const Passage &passage);
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     // True if the discovery data comes from the participant in whose name it is, as far as an address tells.
@@ -152,6 +156,7 @@ private:
     const Requests _requests;
     const std::shared_ptr<RecentGoodbyes> _goodbyes;
     PeerObserver *_observer = nullptr;
+    AuthenticationThread *_authentication = nullptr;
     std::mutex _mutex;              // several sockets receive at once
     KnownPeers _peers;              // guarded by _mutex
     SentFragments _sent;            // guarded by _mutex

@@ -1,6 +1,7 @@
 #include "guard/TokenCheck.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace Rabit::Rtps
 {
@@ -11,39 +12,54 @@ namespace
 constexpr std::uint32_t MostTokens = 16;
 constexpr std::uint32_t MostProperties = 64;
 
+using Bytes = std::span<const std::uint8_t>;
+
 // A string, or bytes, preceded by their number. The padding to a multiple of 4 may be missing at the end.
-bool TakeBytes(RtpsReader &from)
+// Empty if bytes are missing.
+std::optional<Bytes> TakeBytes(RtpsReader &from)
 {
     const std::uint32_t size = from.U32();
     if (size > from.Left())
     {
-        return false;
+        return std::nullopt;
     }
-    from.Skip(size);
+    const Bytes taken = from.Bytes(size);
     from.Skip(std::min<std::size_t>((4 - size % 4) % 4, from.Left()));
-    return from.IsGood();
+    return from.IsGood() ? std::optional(taken) : std::nullopt;
 }
 
-// Each property consists of two of those: a name and a value.
-bool TakeProperties(RtpsReader &from)
+// Each property consists of two of those: a name and a value. Calls visit(name, value) for each.
+template <typename Visit>
+bool TakeProperties(RtpsReader &from, const Visit &visit)
 {
     const std::uint32_t count = from.U32();
-    bool good = from.IsGood() && count <= MostProperties;
-    for (std::uint32_t i = 0; good && i < count; ++i)
+    if (!from.IsGood() || count > MostProperties)
     {
-        good = TakeBytes(from) && TakeBytes(from);
+        return false;
     }
-    return good;
+    for (std::uint32_t i = 0; i < count; ++i)
+    {
+        const auto name = TakeBytes(from);
+        const auto value = name ? TakeBytes(from) : std::nullopt;
+        if (!value)
+        {
+            return false;
+        }
+        visit(*name, *value);
+    }
+    return true;
 }
 
-}  // namespace
-
-bool IsToken(RtpsReader &from)
+// Takes a token; calls visit(name, value) for each of its binary properties.
+template <typename Visit>
+bool TakeToken(RtpsReader &from, const Visit &visit)
 {
-    return TakeBytes(from) && TakeProperties(from) && TakeProperties(from);
+    return TakeBytes(from) && TakeProperties(from, [](Bytes, Bytes) {}) && TakeProperties(from, visit);
 }
 
-bool IsGenericMessage(std::span<const std::uint8_t> payload)
+// Reads a generic message in the same way.
+template <typename Visit>
+bool ReadGenericMessage(Bytes payload, const Visit &visit)
 {
     if (payload.size() < EncapsulationSize || payload[0] != 0 || payload[1] > 1)
     {
@@ -61,9 +77,37 @@ bool IsGenericMessage(std::span<const std::uint8_t> payload)
     bool good = body.IsGood() && count <= MostTokens;
     for (std::uint32_t i = 0; good && i < count; ++i)
     {
-        good = IsToken(body);
+        good = TakeToken(body, visit);
     }
     return good && body.Left() < 4;
+}
+
+}  // namespace
+
+bool IsToken(RtpsReader &from)
+{
+    return TakeToken(from, [](Bytes, Bytes) {});
+}
+
+bool IsGenericMessage(std::span<const std::uint8_t> payload)
+{
+    return ReadGenericMessage(payload, [](Bytes, Bytes) {});
+}
+
+std::span<const std::uint8_t> BinaryPropertyOf(std::span<const std::uint8_t> payload, std::string_view name)
+{
+    Bytes found;
+    const bool isSound = ReadGenericMessage(
+        payload,
+        [&](Bytes of, Bytes value)
+        {
+            const std::string_view text(reinterpret_cast<const char *>(of.data()), of.size());
+            if (found.empty() && text.size() == name.size() + 1 && text.starts_with(name))
+            {
+                found = value;
+            }
+        });
+    return isSound ? found : Bytes();
 }
 
 }  // namespace Rabit::Rtps

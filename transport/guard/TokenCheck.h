@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 
 #include "common/RtpsReader.h"
 
@@ -16,5 +17,7 @@ namespace Rabit::Rtps
 bool IsToken(RtpsReader &from);
 // True if the payload is a sound message of a handshake, or another generic message between participants.
 bool IsGenericMessage(std::span<const std::uint8_t> payload);
+// The value of the first binary property of that name in a sound generic message; empty if there is none.
+std::span<const std::uint8_t> BinaryPropertyOf(std::span<const std::uint8_t> payload, std::string_view name);
 
 }  // namespace Rabit::Rtps

@@ -244,4 +244,36 @@ void AppendEndOfParticipant(std::vector<std::uint8_t> &message, const GuidPrefix
     AppendParameter(message, Parameters::Sentinel, {});
 }
 
+std::vector<std::uint8_t> GoodbyeAfter(std::span<const std::uint8_t> announcement, const GuidPrefix &to)
+{
+    std::vector<std::uint8_t> message;
+    VisitSubmessages(announcement,
+                     [&](const ConstSubmessage &part)
+                     {
+                         RtpsReader body = part.Reader();
+                         body.Skip(WriterInData);
+                         if (part.Kind != SubmessageKind::Data || body.Entity() != ParticipantWriter)
+                         {
+                             return;
+                         }
+                         const std::int64_t number = body.Sequence();
+                         const auto header = announcement.first(RtpsHeaderSize);
+                         message.assign(header.begin(), header.end());
+                         AppendDestination(message, to);
+                         AppendEndOfParticipant(message, SenderOf(announcement), number + 1);
+                     });
+    return message;
+}
+
+std::vector<std::uint8_t> GoodbyeOf(const GuidPrefix &peer, std::span<const std::uint8_t> message,
+                                    std::int64_t number)
+{
+    const auto header = message.first(std::min(RtpsHeaderSize, message.size()));
+    std::vector<std::uint8_t> goodbye(header.begin(), header.end());
+    goodbye.resize(RtpsHeaderSize);
+    std::copy(peer.begin(), peer.end(), goodbye.begin() + PrefixAt);
+    AppendEndOfParticipant(goodbye, peer, number);
+    return goodbye;
+}
+
 }  // namespace Rabit::Rtps

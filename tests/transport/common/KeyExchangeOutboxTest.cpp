@@ -464,4 +464,30 @@ TEST_F(KeyExchangeOutboxTest, MemoryIsBoundedWhateverIsSaid)
     EXPECT_LE(bytes, KeyExchangeOutbox::MostWaiting);
 }
 
+TEST_F(KeyExchangeOutboxTest, OnlyAMessageThatIsNoRepetitionIsWaiting)
+{
+    EXPECT_FALSE(Outbox.IsWaiting(Prefix(1)));
+    Put(1, Step::Request, 1, 0ms);
+    EXPECT_TRUE(Outbox.IsWaiting(Prefix(1)));
+    EXPECT_EQ(Take(0ms), Routes{1});
+    EXPECT_FALSE(Outbox.IsWaiting(Prefix(1)));
+    Put(1, Step::Request, 2, 1ms);
+    EXPECT_FALSE(Outbox.IsWaiting(Prefix(1)));
+    Put(1, Step::Final, 3, 2ms);
+    EXPECT_TRUE(Outbox.IsWaiting(Prefix(1)));
+}
+
+TEST_F(KeyExchangeOutboxTest, NothingIsSentToAForgottenPeerAndItsBytesAreAnswered)
+{
+    Put(1, Step::Request, 1, 0ms);
+    EXPECT_EQ(Take(0ms), Routes{1});
+    Put(1, Step::Keys, 2, 1ms);
+    Put(2, Step::Keys, 3, 2ms);
+    Outbox.Forget(Prefix(1));
+    Outbox.Forget(Prefix(9));
+    EXPECT_EQ(Outbox.Unanswered(), 0);
+    EXPECT_EQ(Outbox.Peers(), 1);
+    EXPECT_EQ(Take(2ms), Routes{3});
+}
+
 }  // namespace

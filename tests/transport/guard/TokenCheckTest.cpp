@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <string_view>
+
 #include "guard/RtpsBytes.h"
 
 namespace
@@ -76,6 +78,23 @@ TEST(TokenCheck, OtherEncodingsAreRefused)
     Bytes message = Generic(Join({U32(1), Token()}));
     message[1] = 3;
     EXPECT_FALSE(IsGenericMessage(message));
+}
+
+TEST(TokenCheck, ABinaryPropertyIsFoundByItsName)
+{
+    const auto found = [](const Bytes &message, std::string_view name)
+    {
+        const auto value = Rabit::Rtps::BinaryPropertyOf(message, name);
+        return Bytes(value.begin(), value.end());
+    };
+    const Bytes token =
+        Join({Text("a"), U32(0), U32(2), Text("c.id"), Octets(5), Text("c.pdata"), Octets(3)});
+    const Bytes message = Generic(Join({U32(1), token}));
+    EXPECT_EQ(found(message, "c.id"), Bytes(5, 1));
+    EXPECT_EQ(found(message, "c.pdata"), Bytes(3, 1));
+    EXPECT_EQ(found(message, "c.pdat"), Bytes());
+    EXPECT_EQ(found(message, "c.perm"), Bytes());
+    EXPECT_EQ(found(Bytes(3), "c.id"), Bytes());
 }
 
 }  // namespace

@@ -68,6 +68,12 @@ void HandshakeEnds::Received(std::span<const std::uint8_t> datagram, TimePoint n
     }
 }
 
+void HandshakeEnds::Forget(const Rtps::GuidPrefix &peer)
+{
+    const std::lock_guard lock(_mutex);
+    std::erase_if(_ends, [&](const End &end) { return end.To == peer; });
+}
+
 std::vector<HandshakeEnds::Datagram> HandshakeEnds::TakeDue(TimePoint now)
 {
     std::vector<Datagram> due;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "VendorTraffic.h"
+#include "common/Rtps.h"
 
 namespace Rabit::Cyclone
 {
@@ -35,11 +35,13 @@ public:
     void Sent(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route);
     // Takes any datagram that was received.
     void Received(std::span<const std::uint8_t> datagram, TimePoint now);
+    // Repeats nothing to that participant, until more is sent to it.
+    void Forget(const Rtps::GuidPrefix &peer);
     // Returns the datagrams to repeat by now.
     std::vector<Datagram> TakeDue(TimePoint now);
 
 private:
-    using Peer = std::array<std::uint8_t, 12>;  // first bytes of its GUID
+    using Peer = Rtps::GuidPrefix;
     struct End
     {
         Peer To;

@@ -64,6 +64,18 @@ bool OutboxThread::ReceivedExchange(const KeyExchange &what)
     return isHeard;
 }
 
+bool OutboxThread::IsWaiting(const KeyExchange::Prefix &peer)
+{
+    const std::lock_guard lock(_mutex);
+    return _exchanges.IsWaiting(peer);
+}
+
+void OutboxThread::Forget(const KeyExchange::Prefix &peer)
+{
+    const std::lock_guard lock(_mutex);
+    _exchanges.Forget(peer);
+}
+
 void OutboxThread::SendExchanges(std::unique_lock<std::mutex> &lock)
 {
     for (const KeyExchangeOutbox::Datagram &datagram : _exchanges.TakeDue(Clock::now()))

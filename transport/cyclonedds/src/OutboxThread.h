@@ -41,6 +41,9 @@ public:
                      const RabitCycloneRoute &route);
     // Takes a received datagram. Returns false if the vendor should not see it.
     bool ReceivedExchange(const KeyExchange &what);
+    // As in KeyExchangeOutbox.
+    bool IsWaiting(const KeyExchange::Prefix &peer);
+    void Forget(const KeyExchange::Prefix &peer);
 
 private:
     using Clock = std::chrono::steady_clock;

@@ -317,7 +317,10 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
 void SessionCore::PeerGone(const Prefix &prefix)
 {
     const ddsi_guid_t participant = ParticipantOf(prefix);
-    const bool isSilent = RabitCycloneLeaseHasExpired(&participant) || _domain.WasEnded(prefix);
+    const bool isForgotten = _domain.WasForgotten(prefix);
+    const bool isSilent =
+        RabitCycloneLeaseHasExpired(&participant) || _domain.WasEnded(prefix) || isForgotten;
+    _domain.Gone(prefix);
     const auto how = isSilent ? PeerEvent::Kind::Lost : PeerEvent::Kind::Left;
     if (how == PeerEvent::Kind::Lost)
     {
@@ -327,6 +330,10 @@ void SessionCore::PeerGone(const Prefix &prefix)
     {
         const std::lock_guard lock(_mutex);
         identity = _peers.Remove(prefix);
+        if (isForgotten)
+        {
+            _proof.Unfinished(identity != nullptr ? identity->Node : "");
+        }
         if (identity == nullptr)
         {
             return;

@@ -15,6 +15,7 @@
 
 #include "AnnouncedEndpoints.h"
 #include "DomainConfig.h"
+#include "Guid.h"
 #include "SampleBurst.h"
 #include "VendorLog.h"
 #include "VendorTraffic.h"
@@ -23,6 +24,7 @@
 #include "common/RtpsTraffic.h"
 #include "common/SendingSamples.h"
 #include "guard/JoinMessages.h"
+#include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::Cyclone
 {
@@ -108,6 +110,35 @@ void VendorDomain::NoteRoute(std::span<const std::uint8_t> datagram, const Rabit
     }
 }
 
+bool VendorDomain::HasKeysOf(const Rtps::GuidPrefix &participant)
+{
+    std::unique_lock lock(_cardMutex);
+    if (_announcement.empty())
+    {
+        return false;
+    }
+    const ddsi_guid_t own = ParticipantOf(Rtps::SenderOf(_announcement));
+    lock.unlock();
+    const ddsi_guid_t peer = ParticipantOf(participant);
+    return RabitCycloneHasKeysOf(_watch, &own, &peer);
+}
+
+void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
+{
+    std::vector<std::uint8_t> goodbye;
+    {
+        const std::lock_guard lock(_cardMutex);
+        goodbye = Rtps::GoodbyeAfter(_announcement, participant);
+    }
+    SendCard(participant, goodbye);
+    SendCard(std::nullopt, goodbye);
+    _outbox.Forget(participant);
+    _handshakes.Forget(participant);
+    _goodbyes->Note(participant, std::chrono::steady_clock::now());
+    const ddsi_guid_t guid = ParticipantOf(participant);
+    RabitCycloneForget(_watch, &guid);
+}
+
 void VendorDomain::NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup)
 {
     constexpr std::size_t most = 4096;
@@ -191,6 +222,11 @@ std::size_t VendorDomain::JoinDelivered(std::span<std::uint8_t> buffer, std::siz
     return Rtps::JoinMessages(now, buffer, size);
 }
 
+void VendorDomain::Gone(const Rtps::GuidPrefix &participant)
+{
+    _authentication.Gone(participant);
+}
+
 void VendorDomain::Lost(const Rtps::GuidPrefix &participant)
 {
     if (_meets)
@@ -226,12 +262,18 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     }
     if (domain._secured)
     {
+        if (announcing.Alone)
+        {
+            const std::lock_guard lock(domain._cardMutex);
+            domain._announcement.assign(datagram, datagram + size);
+        }
         domain._handshakes.Sent({datagram, size}, *route);
         domain.RepeatHandshakes();
-        if (const auto exchange = ReadKeyExchange({datagram, size});
-            exchange && domain._outbox.PutExchange({datagram, size}, *exchange, *route))
+        if (const auto exchange = ReadKeyExchange({datagram, size}))
         {
-            return false;
+            domain.NoteRoute({datagram, size}, *route);
+            domain._authentication.Sent(*exchange);
+            return !domain._outbox.PutExchange({datagram, size}, *exchange, *route);
         }
     }
     return true;
@@ -353,10 +395,13 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     {
         domain._handshakes.Received({datagram, admitted}, std::chrono::steady_clock::now());
         domain.RepeatHandshakes();
-        if (const auto exchange = ReadKeyExchange({datagram, admitted});
-            exchange && !domain._outbox.ReceivedExchange(*exchange))
+        if (const auto exchange = ReadKeyExchange({datagram, admitted}))
         {
-            return 0;
+            domain._authentication.Received(*exchange);
+            if (!domain._outbox.ReceivedExchange(*exchange))
+            {
+                return 0;
+            }
         }
     }
     const Announcing announcing = AnnouncingOf({datagram, admitted});
@@ -391,6 +436,10 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     if (_meets)
     {
         _guard.SetObserver(_meeting);
+    }
+    if (_secured)
+    {
+        _guard.SetAuthentication(_authentication);
     }
     KeepLargeBlocksOffTheHeap();
     const std::string config = MakeDomainConfig(settings);
@@ -447,6 +496,12 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                         .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
                         .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
     }
+    if (_secured && _watch != nullptr)
+    {
+        _authentication.Start({.IsAuthenticated = [this](const auto &peer) { return HasKeysOf(peer); },
+                               .IsWaiting = [this](const auto &peer) { return _outbox.IsWaiting(peer); },
+                               .Forget = [this](const auto &peer, auto /*number*/) { Forget(peer); }});
+    }
     if (_watch == nullptr)
     {
         log->Line(
@@ -471,6 +526,7 @@ bool VendorDomain::IsUnheard(const ddsi_guid_t &participant) const
 
 VendorDomain::~VendorDomain()
 {
+    _authentication.Stop();
     _meeting.Stop();
     _outbox.Stop();
     _entity.Reset();

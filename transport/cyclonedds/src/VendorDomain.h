@@ -47,10 +47,17 @@ public:
     {
         return _meets && _meeting.IsReplayed(participant);
     }
+    // The vendor does not know another participant any more.
+    void Gone(const Rtps::GuidPrefix &participant);
     // The vendor has lost another participant.
     void Lost(const Rtps::GuidPrefix &participant);
     // True if the vendor was told here that the participant is gone, because it was silent.
     bool WasEnded(const Rtps::GuidPrefix &participant) const { return _meeting.WasEnded(participant); }
+    // The same, because it was not authenticated (guard/AuthenticationRetries.h).
+    bool WasForgotten(const Rtps::GuidPrefix &participant) const
+    {
+        return _authentication.WasForgotten(participant);
+    }
     // True if another participant has said goodbye a moment ago (guard/RecentGoodbyes.h).
     bool HasSaidGoodbye(const Rtps::GuidPrefix &participant) const
     {
@@ -66,6 +73,10 @@ private:
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);
+    // True if this node's participant and that one have each other's keys.
+    bool HasKeysOf(const Rtps::GuidPrefix &participant);
+    // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
+    void Forget(const Rtps::GuidPrefix &participant);
     // Called whenever something is sent or received: the vendor sends something regularly.
     void RepeatHandshakes();
     // Returns the size of the part of a datagram that the vendor may see.
@@ -93,10 +104,12 @@ private:
     std::map<const void *, RabitCycloneRoute> _groups;
     std::set<RabitCycloneRoute, RouteOrder> _listed;
     std::map<Rtps::GuidPrefix, RabitCycloneRoute> _cardRoutes;
+    std::vector<std::uint8_t> _announcement;            // our last one; guarded by _cardMutex
     std::vector<std::vector<std::uint8_t>> _delivered;  // for the vendor; guarded by _cardMutex
     DirectAnnouncements _direct;
     HandshakeEnds _handshakes;
     const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
+    Rtps::AuthenticationThread _authentication;
     Rtps::RtpsGuard _guard;
     HardwareAddresses _addresses;
     OutboxThread _outbox;

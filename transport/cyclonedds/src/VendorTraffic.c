@@ -463,6 +463,28 @@ void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant)
     thread_state_asleep(lookup_thread_state());
 }
 
+/* The vendor matches the writer of protected discovery when it has the keys of both. */
+bool RabitCycloneHasKeysOf(const void *watch, const ddsi_guid_t *own, const ddsi_guid_t *peer)
+{
+    struct ddsi_domaingv *domain = ((const struct Watch *)watch)->domain;
+    ddsi_guid_t guid = *own;
+    ddsi_guid_t reader;
+    guid.entityid.u = NN_ENTITYID_SEDP_BUILTIN_PUBLICATIONS_SECURE_WRITER;
+    thread_state_awake(lookup_thread_state(), domain);
+    struct ddsi_writer *known = entidx_lookup_writer_guid(domain->entity_index, &guid);
+    const bool has = known != NULL && FindReader(known, peer, &reader);
+    thread_state_asleep(lookup_thread_state());
+    return has;
+}
+
+void RabitCycloneForget(const void *watch, const ddsi_guid_t *peer)
+{
+    struct ddsi_domaingv *domain = ((const struct Watch *)watch)->domain;
+    thread_state_awake(lookup_thread_state(), domain);
+    ddsi_delete_proxy_participant_by_guid(domain, peer, ddsrt_time_wallclock(), 0);
+    thread_state_asleep(lookup_thread_state());
+}
+
 bool RabitCycloneIsUnheard(const void *watch, const ddsi_guid_t *participant)
 {
     struct ddsi_domaingv *domain = ((const struct Watch *)watch)->domain;

@@ -79,6 +79,12 @@ extern "C"
        peer that knows us does. */
     bool RabitCycloneIsUnheard(const void *watch, const ddsi_guid_t *participant);
 
+    /* True if own and other participant have each other's keys. */
+    bool RabitCycloneHasKeysOf(const void *watch, const ddsi_guid_t *own, const ddsi_guid_t *peer);
+    /* Makes the vendor forget another participant, as if its lease had run out. Not with the vendor's locks
+       held. */
+    void RabitCycloneForget(const void *watch, const ddsi_guid_t *peer);
+
     /* Until RabitCycloneWriteToAll, samples that this thread writes go to those of the participants alone
        that have readers of this writer, at the readers' own addresses. `type` is the type of the writer's
        topic. At most four addresses are used. */

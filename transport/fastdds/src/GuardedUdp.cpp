@@ -16,6 +16,7 @@
 #include "AcknowledgementTranslator.h"
 #include "AnnouncementPace.h"
 #include "HeartbeatPace.h"
+#include "KeyAddressees.h"
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
 #include "common/HardwareAddresses.h"
@@ -23,6 +24,7 @@
 #include "common/KeyExchangeOutbox.h"
 #include "common/RecentNumbers.h"
 #include "common/SendingSamples.h"
+#include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::FastDds
 {
@@ -93,9 +95,31 @@ public:
                  .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
                  .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
         }
+        if (AuthenticationThread *const authentication = Authentication())
+        {
+            _guard.SetAuthentication(*authentication);
+            authentication->Start(
+                {.IsAuthenticated =
+                     [this](const auto &peer)
+                 {
+                     const auto own = OwnAnnouncement();
+                     return !own.empty() && KeyAddressees::HasKeysOf(SenderOf(own), peer);
+                 },
+                 .IsWaiting =
+                     [this](const auto &peer)
+                 {
+                     const std::lock_guard lock(_sending);
+                     return _exchanges.IsWaiting(peer);
+                 },
+                 .Forget = [this](const auto &peer, auto number) { Forget(peer, number); }});
+        }
     }
     ~GuardedUdp() override
     {
+        if (AuthenticationThread *const authentication = Authentication())
+        {
+            authentication->Stop();
+        }
         if (MeetingThread *const meeting = Meeting())
         {
             meeting->Stop();
@@ -122,6 +146,10 @@ public:
         const auto left = static_cast<std::uint32_t>(SizeWithoutStatistics({buffer, size}));
         _guard.Sending({buffer, left});
         OutgoingMessage message = ReadOutgoing({buffer, left});
+        if (message.Announcement && Authentication() != nullptr)
+        {
+            _announcement.assign(buffer, buffer + left);
+        }
         message.HasSamples = message.HasSamples || SendingSamples::Now();
         if (const auto exchange = message.HasSamples ? std::nullopt : KeyExchangeOf({buffer, left});
             exchange && PutExchange(sender, {buffer, left}, *exchange, *begin, *end))
@@ -206,6 +234,11 @@ public:
             }
             return;
         }
+        if (Authentication() != nullptr)
+        {
+            const std::lock_guard lock(_receiving);
+            _receiver = {next, local, remote};
+        }
         const auto handOn = [&](std::span<std::uint8_t> admitted)
         {
             Translate(admitted);
@@ -229,7 +262,7 @@ public:
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
     using Route = std::pair<rtps::SenderResource *, rtps::Locator_t>;
-    // The vendor's receiver to which the content of cards is delivered.
+    // The vendor's receiver to which the content of cards, and goodbyes, are delivered.
     struct Receiver
     {
         TransportReceiverInterface *Next = nullptr;
@@ -238,6 +271,30 @@ private:
     };
 
     MeetingThread *Meeting() const { return _descriptor.Chosen().Meeting.get(); }
+    AuthenticationThread *Authentication() const { return _descriptor.Chosen().Authentication.get(); }
+    std::vector<std::uint8_t> OwnAnnouncement()
+    {
+        const std::lock_guard lock(_sending);
+        return _announcement;
+    }
+    // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
+    void Forget(const GuidPrefix &peer, std::int64_t number)
+    {
+        const std::vector<std::uint8_t> own = OwnAnnouncement();
+        const auto ours = GoodbyeAfter(own, peer);
+        SendCard(peer, ours);
+        SendCard(std::nullopt, ours);
+        {
+            const std::lock_guard lock(_sending);
+            _exchanges.Forget(peer);
+        }
+        _descriptor.Chosen().Goodbyes->Note(peer, std::chrono::steady_clock::now());
+        auto theirs = GoodbyeOf(peer, own, number);
+        if (const Receiver receiver = LastReceiver(); receiver.Next != nullptr)
+        {
+            HandOn(receiver, theirs);
+        }
+    }
     // Notes the address of a participant to which the vendor sends. Requires _sending.
     void NoteRoute(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
                    rtps::LocatorsIterator &begin, const rtps::LocatorsIterator &end)
@@ -273,19 +330,21 @@ private:
         std::for_each(_groups.begin(), _groups.end(), send);
         std::for_each(_listed.begin(), _listed.end(), send);
     }
+    Receiver LastReceiver()
+    {
+        const std::lock_guard lock(_receiving);
+        return _receiver;
+    }
+    static void HandOn(const Receiver &receiver, std::span<std::uint8_t> message)
+    {
+        receiver.Next->OnDataReceived(message.data(), static_cast<std::uint32_t>(message.size()),
+                                      receiver.Local, receiver.Remote);
+    }
     // Runs on the meeting's thread. The vendor accepts datagrams on several threads.
     void DeliverCard(const HostAddress &from, std::span<std::uint8_t> datagram)
     {
-        Receiver receiver;
-        {
-            const std::lock_guard lock(_receiving);
-            receiver = _receiver;
-        }
-        const auto handOn = [&](std::span<std::uint8_t> admitted)
-        {
-            receiver.Next->OnDataReceived(admitted.data(), static_cast<std::uint32_t>(admitted.size()),
-                                          receiver.Local, receiver.Remote);
-        };
+        const Receiver receiver = LastReceiver();
+        const auto handOn = [&](std::span<std::uint8_t> admitted) { HandOn(receiver, admitted); };
         if (receiver.Next != nullptr && !_guard.Admit(datagram, from, std::chrono::steady_clock::now(),
                                                       std::cref(handOn), RtpsGuard::Origin::Card))
         {
@@ -398,6 +457,7 @@ private:
             if (Leaves(socket, *begin))
             {
                 NumberOf(*begin);
+                NoteExchangeRoute(what, {sender, *begin});
                 if (!_exchanges.Put(datagram, what, _routes.Of({sender, *begin}).first, now))
                 {
                     return false;  // no earlier one was put either
@@ -406,6 +466,17 @@ private:
         }
         SendExchanges(now);
         return true;
+    }
+    void NoteExchangeRoute(const KeyExchange &what, const Route &route)
+    {
+        if (Authentication() != nullptr && what.To != KeyExchange::Prefix{})
+        {
+            Authentication()->Sent(what);
+            if (_cardRoutes.size() < AnnouncementPace::MostDestinations || _cardRoutes.contains(what.To))
+            {
+                _cardRoutes.insert_or_assign(what.To, route);
+            }
+        }
     }
     void SendExchanges(TimePoint now)
     {
@@ -433,6 +504,10 @@ private:
         if (what->To != _self)
         {
             return true;
+        }
+        if (Authentication() != nullptr)
+        {
+            Authentication()->Received(*what);
         }
         const bool isHeard = _exchanges.Received(*what, std::chrono::steady_clock::now());
         ScheduleOwed();
@@ -495,6 +570,7 @@ private:
     // Other routes of announcements.
     std::set<Route> _listed;
     std::map<GuidPrefix, Route> _cardRoutes;
+    std::vector<std::uint8_t> _announcement;  // our last one, if Authentication() wants it
     RecentNumbers<rtps::Locator_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;

@@ -60,6 +60,8 @@ public:
         std::shared_ptr<DeferredCall> Owed;
         // Null: endpoints are found by the vendor's discovery alone.
         std::shared_ptr<Rtps::MeetingThread> Meeting;
+        // Null unless Mode is Protected.
+        std::shared_ptr<Rtps::AuthenticationThread> Authentication;
         // Where the guard notes the goodbyes of known participants.
         std::shared_ptr<Rtps::RecentGoodbyes> Goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
         // The group to which samples go; empty: they go to each host separately.

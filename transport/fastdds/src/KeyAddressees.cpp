@@ -23,6 +23,22 @@ namespace Rabit::FastDds
 
 namespace rtps = eprosima::fastrtps::rtps;
 
+bool KeyAddressees::HasKeysOf(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer)
+{
+    // OMG DDS Security 1.1, 7.4.5: SEDPbuiltinPublicationsSecureWriter and its reader. The vendor matches
+    // them when it has the keys of both.
+    constexpr rtps::octet secureWriter[] = {0xff, 0x00, 0x03, 0xc2};
+    constexpr rtps::octet secureReader[] = {0xff, 0x00, 0x03, 0xc7};
+    rtps::GUID_t writer;
+    rtps::GUID_t reader;
+    std::copy(own.begin(), own.end(), writer.guidPrefix.value);
+    std::copy(peer.begin(), peer.end(), reader.guidPrefix.value);
+    std::copy(std::begin(secureWriter), std::end(secureWriter), writer.entityId.value);
+    std::copy(std::begin(secureReader), std::end(secureReader), reader.entityId.value);
+    rtps::RTPSWriter *const found = rtps::RTPSDomainImpl::find_local_writer(writer);
+    return found != nullptr && found->matched_reader_is_matched(reader);
+}
+
 bool KeyAddressees::Heed(const rtps::RTPSParticipant &participant)
 {
     // OMG DDS Security 1.1, 7.4.5: BuiltinParticipantVolatileMessageSecureWriter

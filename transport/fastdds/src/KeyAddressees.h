@@ -3,6 +3,8 @@
 #include <fastdds/rtps/participant/RTPSParticipant.h>
 #include <fastdds/rtps/interfaces/IReaderDataFilter.hpp>
 
+#include "common/Rtps.h"
+
 namespace Rabit::FastDds
 {
 
@@ -16,6 +18,8 @@ public:
     // Installs the filter in an enabled participant. Returns false, and changes nothing, if its writer of
     // keys is not found.
     static bool Heed(const eprosima::fastrtps::rtps::RTPSParticipant &participant);
+    // True if the participant `own` of this process and `peer` have each other's keys.
+    static bool HasKeysOf(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer);
 
     bool is_relevant(const eprosima::fastrtps::rtps::CacheChange_t &change,
                      const eprosima::fastrtps::rtps::GUID_t &reader) const override;

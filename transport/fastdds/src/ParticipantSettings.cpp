@@ -163,6 +163,8 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.Owed = std::move(calls.Owed);
     guarded.Turns = std::move(calls.Turns);
     guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? std::move(calls.Meeting) : nullptr;
+    guarded.Authentication =
+        guarded.Mode == RtpsGuard::Mode::Protected ? std::move(calls.Authentication) : nullptr;
     guarded.Goodbyes = std::move(calls.Goodbyes);
     guarded.HasPeers = !settings.Peers.empty();
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;

@@ -11,6 +11,7 @@
 
 #include "DeferredCall.h"
 #include "common/SessionLog.h"
+#include "guard/AuthenticationThread.h"
 #include "guard/RtpsMessage.h"
 #include "rtps/MeetingThread.h"
 
@@ -31,6 +32,7 @@ struct NetworkCalls
     std::shared_ptr<DeferredCall> Owed;
     std::shared_ptr<DiscoveryTurns> Turns;
     std::shared_ptr<Rtps::MeetingThread> Meeting;
+    std::shared_ptr<Rtps::AuthenticationThread> Authentication;
     // Where the guard notes the goodbyes of known participants.
     std::shared_ptr<Rtps::RecentGoodbyes> Goodbyes;
 };

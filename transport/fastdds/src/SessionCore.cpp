@@ -108,6 +108,7 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
          .Owed = _owed,
          .Turns = std::move(turns),
          .Meeting = _meeting,
+         .Authentication = _authentication,
          .Goodbyes = _goodbyes});
     attributes.participantID = _number.Get();
     attributes.prefix = MakeGuidPrefix();
@@ -134,6 +135,7 @@ SessionCore::~SessionCore()
 {
     Close();
     _meeting->Stop();
+    _authentication->Stop();
     _announceTimer.Stop();
     _owedTimer.Stop();
     rtps::RTPSDomain::removeRTPSParticipant(_participant);
@@ -265,8 +267,7 @@ void SessionCore::onParticipantAuthentication(rtps::RTPSParticipant * /*particip
     if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
     {
         const std::lock_guard lock(_mutex);
-        const auto found = _unproven.find(prefix);
-        _proof.Refused(found == _unproven.end() ? "" : found->second.Who->Node);
+        _proof.Refused(NameOfNewcomer(prefix));
         return;
     }
     Newcomer newcomer;
@@ -282,6 +283,12 @@ void SessionCore::onParticipantAuthentication(rtps::RTPSParticipant * /*particip
         _unproven.erase(found);
     }
     Admit(prefix, newcomer);
+}
+
+std::string SessionCore::NameOfNewcomer(const GuidPrefix &prefix) const
+{
+    const auto found = _unproven.find(prefix);
+    return found == _unproven.end() ? "" : found->second.Who->Node;
 }
 
 void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
@@ -317,13 +324,18 @@ void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
     {
         _meeting->Lost(name);
     }
-    else if (_meeting->WasEnded(name))
+    else if (_meeting->WasEnded(name) || _authentication->WasForgotten(name))
     {
         how = PeerEvent::Kind::Lost;
     }
+    _authentication->Gone(name);
     std::shared_ptr<const PeerSession> session;
     {
         const std::lock_guard lock(_mutex);
+        if (_authentication->WasForgotten(name))
+        {
+            _proof.Unfinished(NameOfNewcomer(prefix));
+        }
         _unproven.erase(prefix);
         _proven.erase(prefix);
         session = _peers.Remove(prefix);

@@ -23,6 +23,7 @@
 #include "common/PeerSessions.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
+#include "guard/AuthenticationThread.h"
 #include "guard/RecentGoodbyes.h"
 #include "rtps/MeetingThread.h"
 
@@ -82,6 +83,8 @@ private:
         std::shared_ptr<const ParticipantIdentity> Who;
         PeerPlace Place;
     };
+    // Name of a Rabit node that is not authenticated yet; empty if unknown. Requires _mutex.
+    std::string NameOfNewcomer(const GuidPrefix &prefix) const;
     void Admit(const GuidPrefix &prefix, const Newcomer &newcomer);
     void PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how);
 
@@ -103,6 +106,8 @@ private:
     // The guard notes them, before the vendor sees them.
     const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
     const std::shared_ptr<Rtps::MeetingThread> _meeting;
+    const std::shared_ptr<Rtps::AuthenticationThread> _authentication =
+        std::make_shared<Rtps::AuthenticationThread>();
     const ParticipantNumber _number;
     ParticipantTimer _announceTimer;
     const std::shared_ptr<DeferredCall> _owed = std::make_shared<DeferredCall>();

@@ -1,0 +1,87 @@
+// The guard lets through announcements and handshakes that agree with each other, and a thread looks at the
+// participants that are not authenticated.
+#include "guard/AuthenticationThread.h"
+
+#include <gtest/gtest.h>
+
+#include "guard/Gate.h"
+#include "guard/RtpsBytes.h"
+
+namespace
+{
+
+using namespace RtpsBytes;
+using Rabit::KeyExchange;
+using Rabit::Rtps::AuthenticationThread;
+using Rabit::Rtps::RtpsGuard;
+
+constexpr EntityId HandshakeWriter = 0x000201c3;
+
+Bytes BigEndian32(std::uint32_t value)
+{
+    return {static_cast<std::uint8_t>(value >> 24), static_cast<std::uint8_t>(value >> 16),
+            static_cast<std::uint8_t>(value >> 8), static_cast<std::uint8_t>(value)};
+}
+
+// A message of a handshake whose `c.pdata` has this port where ParticipantData has its own.
+Bytes HandshakeMessage(std::uint32_t port)
+{
+    const Bytes data =
+        Join({{0, 0x32, 0, 24}, BigEndian32(1), BigEndian32(port), Bytes(12), {127, 0, 0, 1}, {0, 1, 0, 0}});
+    const Bytes token = Join({Text("DDS:Auth:PKI-DH:1.0+Req"), U32(0), U32(1), Text("c.pdata"),
+                              U32(static_cast<std::uint32_t>(data.size())), data});
+    return Message(
+        Data,
+        DataBody(1, Join({{0, 1, 0, 0}, Bytes(96), Text("dds.sec.auth"), U32(1), token}), HandshakeWriter),
+        5);
+}
+
+class AuthenticationTest : public testing::Test
+{
+protected:
+    AuthenticationTest() { Guard.SetAuthentication(Thread); }
+    // True if the vendor gets the datagram; it is counted if not.
+    bool Passes(Bytes datagram)
+    {
+        bool passed = false;
+        const bool honest =
+            Guard.Admit(datagram, SenderHost, Rabit::Rtps::KnownPeers::TimePoint(std::chrono::hours(1)),
+                        [&](std::span<std::uint8_t>) { passed = true; });
+        EXPECT_EQ(passed, honest);
+        return passed;
+    }
+
+    AuthenticationThread Thread;
+    RtpsGuard Guard{RtpsGuard::Mode::Protected, std::chrono::seconds(10)};
+};
+
+TEST_F(AuthenticationTest, TheVendorSeesOneContentOfAParticipantUntilItIsGone)
+{
+    EXPECT_TRUE(Passes(ParticipantMessage(Sender, 7410)));
+    EXPECT_FALSE(Passes(ParticipantMessage(Sender, 7411)));
+    EXPECT_TRUE(Passes(ParticipantMessage(Sender, 7410)));
+    EXPECT_TRUE(Passes(ParticipantMessage(Other, 7411)));
+    Thread.Gone(Sender);
+    EXPECT_TRUE(Passes(ParticipantMessage(Sender, 7411)));
+}
+
+TEST_F(AuthenticationTest, TheVendorSeesNoHandshakeThatSignsOtherAddresses)
+{
+    EXPECT_TRUE(Passes(ParticipantMessage(Sender, 7410)));
+    EXPECT_TRUE(Passes(HandshakeMessage(7410)));
+    EXPECT_FALSE(Passes(HandshakeMessage(7411)));
+}
+
+TEST(AuthenticationThreadTest, AStoppedThreadMakesNoCall)
+{
+    AuthenticationThread thread;
+    thread.Start({.IsAuthenticated = [](const auto &) { return false; },
+                  .IsWaiting = [](const auto &) { return false; },
+                  .Forget = [](const auto &, auto) { ADD_FAILURE(); }});
+    thread.Announced(Sender, {});
+    thread.Stop();
+    thread.Announced(Sender, {});
+    EXPECT_FALSE(thread.WasForgotten(Sender));
+}
+
+}  // namespace

@@ -1,0 +1,154 @@
+#include "guard/AuthenticationRetries.h"
+
+#include <algorithm>
+
+namespace Rabit::Rtps
+{
+
+bool AuthenticationRetries::Announced(const GuidPrefix &peer, const Content &content, TimePoint now)
+{
+    if (!_peers.contains(peer))
+    {
+        MakeRoom();
+    }
+    Peer &known = _peers[peer];
+    known.AnnouncedAt = now;
+    if (!known.IsKnown)
+    {
+        known = Peer{.Known = content,
+                     .IsKnown = true,
+                     .Attempts = known.Attempts,
+                     .ProgressAt = now,
+                     .AnnouncedAt = now};
+        return true;
+    }
+    if (known.Known.Digest != content.Digest)
+    {
+        known.IsContradicted = true;
+        return false;
+    }
+    known.Known.Number = std::max(known.Known.Number, content.Number);
+    return true;
+}
+
+bool AuthenticationRetries::Signs(const GuidPrefix &peer, const std::vector<std::uint64_t> &addresses)
+{
+    const auto found = _peers.find(peer);
+    if (addresses.empty() || found == _peers.end() || !found->second.IsKnown)
+    {
+        return true;
+    }
+    Peer &known = found->second;
+    const bool agrees = std::includes(addresses.begin(), addresses.end(), known.Known.Addresses.begin(),
+                                      known.Known.Addresses.end());
+    known.IsContradicted = known.IsContradicted || !agrees;
+    return agrees;
+}
+
+void AuthenticationRetries::Exchanged(const GuidPrefix &peer, Step step, bool isSent, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found == _peers.end() || step == Step::Control || step == Step::Rest)
+    {
+        return;
+    }
+    const std::uint32_t bit = 1u << (2 * static_cast<unsigned>(step) + (isSent ? 1 : 0));
+    if ((found->second.Steps & bit) == 0)
+    {
+        found->second.Steps |= bit;
+        found->second.ProgressAt = now;
+    }
+}
+
+void AuthenticationRetries::Gone(const GuidPrefix &peer)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end())
+    {
+        found->second.IsKnown = false;
+    }
+}
+
+std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::DueOf(const Peer &peer)
+{
+    if (!peer.IsKnown || peer.IsAuthenticated || peer.AnnouncedAt <= peer.ProgressAt)
+    {
+        return std::nullopt;
+    }
+    constexpr int MostDoublings = 8;
+    const bool hasBegun = peer.Steps != 0 || peer.IsContradicted;
+    const std::chrono::seconds first = hasBegun ? Stalled : NotBegun;
+    return peer.ProgressAt + std::min(first * (1 << std::min(peer.Attempts, MostDoublings)), Longest);
+}
+
+std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::Due() const
+{
+    std::optional<TimePoint> due;
+    for (const auto &[prefix, peer] : _peers)
+    {
+        if (const auto of = DueOf(peer))
+        {
+            due = due ? std::min(*due, *of) : of;
+        }
+    }
+    return due;
+}
+
+std::vector<GuidPrefix> AuthenticationRetries::Doubtful(TimePoint now) const
+{
+    std::vector<GuidPrefix> found;
+    for (const auto &[prefix, peer] : _peers)
+    {
+        if (const auto due = DueOf(peer); due && *due <= now)
+        {
+            found.push_back(prefix);
+        }
+    }
+    return found;
+}
+
+void AuthenticationRetries::IsAuthenticated(const GuidPrefix &peer)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end() && found->second.IsKnown)
+    {
+        found->second.IsAuthenticated = true;
+        found->second.Attempts = 0;
+    }
+}
+
+void AuthenticationRetries::IsWaiting(const GuidPrefix &peer, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end())
+    {
+        found->second.ProgressAt = now;
+    }
+}
+
+std::int64_t AuthenticationRetries::Forget(const GuidPrefix &peer)
+{
+    Peer &known = _peers[peer];
+    known.IsKnown = false;
+    known.IsForgotten = true;
+    ++known.Attempts;
+    return known.Known.Number + 1;
+}
+
+bool AuthenticationRetries::WasForgotten(const GuidPrefix &peer) const
+{
+    const auto found = _peers.find(peer);
+    return found != _peers.end() && found->second.IsForgotten;
+}
+
+void AuthenticationRetries::MakeRoom()
+{
+    if (_peers.size() >= Most)
+    {
+        _peers.erase(std::min_element(_peers.begin(), _peers.end(),
+                                      [](const auto &one, const auto &other)
+                                      { return one.second.AnnouncedAt < other.second.AnnouncedAt; }));
+    }
+}
+
+}  // namespace Rabit::Rtps

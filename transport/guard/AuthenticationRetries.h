@@ -1,0 +1,99 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/KeyExchange.h"
+#include "guard/RtpsMessage.h"
+
+namespace Rabit::Rtps
+{
+
+// Decides when to begin anew with a participant that was not authenticated. One forged announcement, or one
+// damaged message of a handshake, keeps two honest participants apart for good: the vendors keep the first
+// addresses of a participant, and do not try every failed handshake again. So a participant with which
+// nothing has gone on for a while is forgotten, by the own vendor and by a goodbye to the participant itself.
+// Both then begin with the next announcement.
+//
+// - An authenticated participant is never forgotten here. The vendor is asked whether it is one.
+// - Until a participant is forgotten, the vendor sees no announcement of it with other content (addresses,
+//   security). Those are the content that its handshake must confirm: see Signs.
+// - Bounds: each attempt ends after a bounded number of steps, whatever a forger sends; attempts come with
+//   exponential backoff; and only a participant that goes on announcing itself is tried again.
+//
+// A pure state machine, not thread-safe.
+class AuthenticationRetries
+{
+public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+    using Step = KeyExchange::Step;
+
+    // Time without progress until an attempt has failed: twice as long as a repeated message of a handshake
+    // waits on a thin channel (KeyExchangeOutbox::LongestGap), and a little more. Doubles with each attempt.
+    static constexpr std::chrono::seconds Stalled{20};
+    // The same if nothing has begun. On a thin channel the other side's requests wait for other exchanges.
+    static constexpr std::chrono::seconds NotBegun{60};
+    static constexpr std::chrono::seconds Longest{300};
+    // As many as the guard knows (KnownPeers). When there are more, the one whose announcement came longest
+    // ago is forgotten here.
+    static constexpr std::size_t Most = 1024;
+
+    // Content of a participant's announcement.
+    struct Content
+    {
+        std::uint64_t Digest = 0;                // of addresses and security
+        std::vector<std::uint64_t> Addresses{};  // sorted; each an address and its use
+        std::int64_t Number = 0;                 // of the sample
+    };
+
+    // A participant was announced. Returns false if the vendor should not see that, because it knows the
+    // participant with other content.
+    bool Announced(const GuidPrefix &peer, const Content &content, TimePoint now);
+    // A message of a handshake came that signs these addresses of its sender; empty: none. Returns false if
+    // the vendor should not see it, because it knows the sender by an address that is not among them. Only a
+    // participant whose handshake confirms its addresses is authenticated, so that a forged address does not
+    // last. `addresses` must be sorted.
+    bool Signs(const GuidPrefix &peer, const std::vector<std::uint64_t> &addresses);
+    // A message of that step was received from the participant, or sent to it. Only the first of each step in
+    // an attempt counts.
+    void Exchanged(const GuidPrefix &peer, Step step, bool isSent, TimePoint now);
+    // The vendor does not know the participant any more.
+    void Gone(const GuidPrefix &peer);
+
+    // When a participant may have to be forgotten; none: no time.
+    std::optional<TimePoint> Due() const;
+    // The participants to look at now. For each, one of the next three is to be called.
+    std::vector<GuidPrefix> Doubtful(TimePoint now) const;
+    void IsAuthenticated(const GuidPrefix &peer);
+    // A message to it has not been sent yet: it gets more time.
+    void IsWaiting(const GuidPrefix &peer, TimePoint now);
+    // Returns the number for the goodbye that makes the vendor forget it.
+    std::int64_t Forget(const GuidPrefix &peer);
+    // True if it was forgotten in this way, and not announced since.
+    bool WasForgotten(const GuidPrefix &peer) const;
+
+private:
+    struct Peer
+    {
+        Content Known;
+        bool IsKnown = false;  // to the vendor; if not, Known is of the past
+        bool IsForgotten = false;
+        bool IsAuthenticated = false;
+        bool IsContradicted = false;  // since it is known
+        std::uint32_t Steps = 0;      // of this attempt: a bit for each step, sent or received
+        int Attempts = 0;             // that have failed
+        TimePoint ProgressAt{};
+        TimePoint AnnouncedAt{};
+    };
+
+    static std::optional<TimePoint> DueOf(const Peer &peer);
+    void MakeRoom();
+
+    std::map<GuidPrefix, Peer> _peers;
+};
+
+}  // namespace Rabit::Rtps
