@@ -7,7 +7,10 @@ namespace Rabit::Rtps
 
 void AuthenticationThread::Start(Calls calls)
 {
-    _calls = std::move(calls);
+    {
+        const std::lock_guard lock(_mutex);
+        _calls = std::move(calls);
+    }
     _thread = std::thread([this] { Run(); });
 }
 
@@ -55,8 +58,15 @@ void AuthenticationThread::Exchanged(const GuidPrefix &peer, const KeyExchange &
 
 void AuthenticationThread::Gone(const GuidPrefix &peer)
 {
-    const std::lock_guard lock(_mutex);
-    _retries.Gone(peer);
+    {
+        const std::lock_guard lock(_mutex);
+        _retries.Gone(peer);
+        if (_stop || !_calls.Drop)
+        {
+            return;
+        }
+    }
+    _calls.Drop(peer);
 }
 
 bool AuthenticationThread::WasForgotten(const GuidPrefix &peer) const

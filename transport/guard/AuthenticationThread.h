@@ -18,7 +18,7 @@ class AuthenticationThread
 public:
     using Clock = std::chrono::steady_clock;
 
-    // Called on that thread, without a lock of this object.
+    // Called on that thread if nothing else is said, and without a lock of this object.
     struct Calls
     {
         // True if this node and the participant can read each other's discovery.
@@ -27,6 +27,8 @@ public:
         std::function<bool(const GuidPrefix &)> IsWaiting;
         // Makes the vendor forget the participant, and the participant this node. `number`: of the goodbye.
         std::function<void(const GuidPrefix &, std::int64_t number)> Forget;
+        // Drops all that waits to be sent to the participant. Called in Gone.
+        std::function<void(const GuidPrefix &)> Drop;
     };
 
     AuthenticationThread() = default;
@@ -38,7 +40,7 @@ public:
     // When this returns, no call is in progress and none will be made. A call must not stop the thread.
     void Stop();
 
-    // Forwarded to AuthenticationRetries. Any thread; no call is made inside.
+    // Forwarded to AuthenticationRetries. Any thread; no call is made inside, except in Gone.
     bool Announced(const GuidPrefix &peer, const AuthenticationRetries::Content &content);
     bool Signs(const GuidPrefix &peer, const std::vector<std::uint64_t> &addresses);
     void Received(const KeyExchange &what) { Exchanged(what.From, what, false); }

@@ -8,7 +8,7 @@
 
 struct Visit
 {
-    void (*found)(const unsigned char address[4], void *argument);
+    void (*found)(const struct RabitCyclonePlace *place, void *argument);
     void *argument;
 };
 
@@ -19,12 +19,15 @@ static void VisitLocator(const ddsi_xlocator_t *locator, void *argument)
     const unsigned char *address = locator->c.address + 12;
     if (locator->c.kind == NN_LOCATOR_KIND_UDPv4 && (address[0] & 0xf0) != 0xe0)
     {
-        visit->found(address, visit->argument);
+        const struct RabitCyclonePlace place = {{address[0], address[1], address[2], address[3]},
+                                                locator->c.port};
+        visit->found(&place, visit->argument);
     }
 }
 
 void RabitCyclonePeerAddresses(const ddsi_guid_t *participant,
-                               void (*found)(const unsigned char address[4], void *argument), void *argument)
+                               void (*found)(const struct RabitCyclonePlace *place, void *argument),
+                               void *argument)
 {
     /* The vendor's thread that calls the listener works for one domain. */
     const struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&lookup_thread_state()->gv);

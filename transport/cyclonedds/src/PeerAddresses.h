@@ -3,16 +3,24 @@
 
 #include <dds/ddsi/ddsi_guid.h>
 
+#include <stdint.h>
+
 #ifdef __cplusplus
 extern "C"
 {
 #endif
 
-    /* Calls found(address, argument) with each unicast IPv4 address, in network order, by which this domain
-       reaches another participant; never for one that the vendor does not know. Call only from a listener of
-       a built-in topic. */
+    struct RabitCyclonePlace
+    {
+        unsigned char address[4]; /* IPv4, in network order */
+        uint32_t port;
+    };
+
+    /* Calls found(place, argument) with each unicast address by which this domain reaches another
+       participant; never for one that the vendor does not know. Call only from a listener of a built-in
+       topic. */
     void RabitCyclonePeerAddresses(const ddsi_guid_t *participant,
-                                   void (*found)(const unsigned char address[4], void *argument),
+                                   void (*found)(const struct RabitCyclonePlace *place, void *argument),
                                    void *argument);
 
     /* Number of network interfaces that one domain can use. */

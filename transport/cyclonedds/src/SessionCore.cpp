@@ -88,10 +88,10 @@ PeerPlace PlaceOf(const Prefix &prefix)
     const ddsi_guid_t participant = ParticipantOf(prefix);
     RabitCyclonePeerAddresses(
         &participant,
-        [](const unsigned char *address, void *argument)
+        [](const RabitCyclonePlace *found, void *argument)
         {
             char text[INET_ADDRSTRLEN] = "";
-            inet_ntop(AF_INET, address, text, sizeof text);
+            inet_ntop(AF_INET, found->address, text, sizeof text);
             static_cast<PeerPlace *>(argument)->push_back(text);
         },
         &place);
@@ -242,6 +242,7 @@ void SessionCore::OnParticipants(dds_entity_t reader, void *self)
                                                 }
                                                 else if (info.valid_data)
                                                 {
+                                                    core._domain.Came(prefix);
                                                     if (!core._domain.IsReplayed(prefix))
                                                     {
                                                         core._announcements.OnPeer();

@@ -84,6 +84,11 @@ void KeepLargeBlocksOffTheHeap()
     ::mallopt(M_MMAP_THRESHOLD, largest);
 }
 
+bool IsSame(const RabitCyclonePlace &one, const RabitCyclonePlace &other)
+{
+    return std::to_array(one.address) == std::to_array(other.address) && one.port == other.port;
+}
+
 bool IsGroup(const DirectAnnouncements::Address &address)
 {
     return (address[0] & 0xf0) == 0xe0;
@@ -132,8 +137,6 @@ void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
     }
     SendCard(participant, goodbye);
     SendCard(std::nullopt, goodbye);
-    _outbox.Forget(participant);
-    _handshakes.Forget(participant);
     _goodbyes->Note(participant, std::chrono::steady_clock::now());
     const ddsi_guid_t guid = ParticipantOf(participant);
     RabitCycloneForget(_watch, &guid);
@@ -141,16 +144,15 @@ void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
 
 void VendorDomain::NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup)
 {
-    constexpr std::size_t most = 4096;
     const std::lock_guard lock(_cardMutex);
     if (isGroup)
     {
         _groups.emplace(route.connection, route);
         return;
     }
-    if (_hasPeers && _listed.size() < most)
+    if (_hasPeers)
     {
-        _listed.insert(route);
+        _listed.Note(route, std::chrono::steady_clock::now());
     }
 }
 
@@ -170,7 +172,7 @@ void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span
             {
                 ways.emplace_back(group, RabitCycloneToDiscoveryGroup);
             }
-            for (const RabitCycloneRoute &listed : _listed)
+            for (const RabitCycloneRoute &listed : _listed.Current(std::chrono::steady_clock::now()))
             {
                 ways.emplace_back(listed, RabitCycloneToHost);
             }
@@ -222,9 +224,48 @@ std::size_t VendorDomain::JoinDelivered(std::span<std::uint8_t> buffer, std::siz
     return Rtps::JoinMessages(now, buffer, size);
 }
 
+void VendorDomain::Came(const Rtps::GuidPrefix &participant)
+{
+    std::vector<RabitCyclonePlace> places;
+    const ddsi_guid_t guid = ParticipantOf(participant);
+    RabitCyclonePeerAddresses(
+        &guid,
+        [](const RabitCyclonePlace *place, void *argument)
+        { static_cast<std::vector<RabitCyclonePlace> *>(argument)->push_back(*place); },
+        &places);
+    const std::lock_guard lock(_cardMutex);
+    _reached.insert_or_assign(participant, std::move(places));
+}
+
+// The vendor announces its participant at each address at which it has ever heard another one.
 void VendorDomain::Gone(const Rtps::GuidPrefix &participant)
 {
     _authentication.Gone(participant);
+    std::vector<RabitCyclonePlace> left;
+    {
+        const std::lock_guard lock(_cardMutex);
+        const auto found = _reached.find(participant);
+        if (found == _reached.end())
+        {
+            return;
+        }
+        left = std::move(found->second);
+        _reached.erase(found);
+        for (const auto &[other, places] : _reached)
+        {
+            std::erase_if(left,
+                          [&places](const RabitCyclonePlace &place)
+                          {
+                              return std::find_if(places.begin(), places.end(),
+                                                  [&](const RabitCyclonePlace &each)
+                                                  { return IsSame(each, place); }) != places.end();
+                          });
+        }
+    }
+    for (const RabitCyclonePlace &place : left)
+    {
+        RabitCycloneAnnounceNoMoreTo(_watch, &place);
+    }
 }
 
 void VendorDomain::Lost(const Rtps::GuidPrefix &participant)
@@ -426,6 +467,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                 .Memory = _multicast ? settings.Memory : settings.Lease,
                 .IsMulticast = _multicast},
                turns),
+      _listed(settings.AnnouncementPeriod),
       // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome,
              _goodbyes),
@@ -500,7 +542,13 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     {
         _authentication.Start({.IsAuthenticated = [this](const auto &peer) { return HasKeysOf(peer); },
                                .IsWaiting = [this](const auto &peer) { return _outbox.IsWaiting(peer); },
-                               .Forget = [this](const auto &peer, auto /*number*/) { Forget(peer); }});
+                               .Forget = [this](const auto &peer, auto /*number*/) { Forget(peer); },
+                               .Drop =
+                                   [this](const auto &peer)
+                               {
+                                   _outbox.Forget(peer);
+                                   _handshakes.Forget(peer);
+                               }});
     }
     if (_watch == nullptr)
     {

@@ -14,7 +14,9 @@
 #include "Entity.h"
 #include "HandshakeEnds.h"
 #include "OutboxThread.h"
+#include "PeerAddresses.h"
 #include "common/HardwareAddresses.h"
+#include "common/RecentRoutes.h"
 #include "common/SessionLog.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/MeetingThread.h"
@@ -47,7 +49,9 @@ public:
     {
         return _meets && _meeting.IsReplayed(participant);
     }
-    // The vendor does not know another participant any more.
+    // The vendor knows another participant, and does not know it any more. Call from a listener of a built-in
+    // topic.
+    void Came(const Rtps::GuidPrefix &participant);
     void Gone(const Rtps::GuidPrefix &participant);
     // The vendor has lost another participant.
     void Lost(const Rtps::GuidPrefix &participant);
@@ -100,9 +104,12 @@ private:
     std::atomic<bool> _meets{false};
     Rtps::MeetingThread _meeting;
     std::mutex _cardMutex;
-    // Guarded by _cardMutex: routes of announcements to groups, and to listed peers; and to each participant.
+    // Guarded by _cardMutex, to _cardRoutes: routes of announcements to groups, and to listed peers; and to
+    // each participant.
     std::map<const void *, RabitCycloneRoute> _groups;
-    std::set<RabitCycloneRoute, RouteOrder> _listed;
+    RecentRoutes<RabitCycloneRoute, RouteOrder> _listed;
+    // The unicast addresses by which the vendor reaches each other participant.
+    std::map<Rtps::GuidPrefix, std::vector<RabitCyclonePlace>> _reached;
     std::map<Rtps::GuidPrefix, RabitCycloneRoute> _cardRoutes;
     std::vector<std::uint8_t> _announcement;            // our last one; guarded by _cardMutex
     std::vector<std::vector<std::uint8_t>> _delivered;  // for the vendor; guarded by _cardMutex

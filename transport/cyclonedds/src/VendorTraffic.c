@@ -39,6 +39,7 @@ struct Watch
     ddsi_tran_write_fn_t write;
     ddsi_tran_read_fn_t read;
     struct RabitCycloneCalls calls;
+    struct addrset *listed; /* where the domain announces itself without having heard anybody */
     struct Watch *next;
 };
 
@@ -58,7 +59,7 @@ static _Thread_local struct Targets targets;
 
 static struct Watch Find(const struct ddsi_domaingv *domain)
 {
-    struct Watch found = {NULL, NULL, NULL, {NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL}, NULL};
+    struct Watch found = {NULL, NULL, NULL, {NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL}, NULL, NULL};
     pthread_rwlock_rdlock(&lock);
     for (const struct Watch *watch = first; watch != NULL; watch = watch->next)
     {
@@ -336,6 +337,18 @@ static ssize_t ReadAndTell(ddsi_tran_conn_t connection, unsigned char *buffer, s
         connection == watch.domain->disc_conn_uc);
 }
 
+struct Copy
+{
+    const struct ddsi_domaingv *domain;
+    struct addrset *to;
+};
+
+static void CopyLocator(const ddsi_xlocator_t *locator, void *argument)
+{
+    const struct Copy *copy = argument;
+    add_xlocator_to_addrset(copy->domain, copy->to, locator);
+}
+
 void *RabitCycloneWatch(struct RabitCycloneCalls calls)
 {
     struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&lookup_thread_state()->gv);
@@ -348,6 +361,9 @@ void *RabitCycloneWatch(struct RabitCycloneCalls calls)
     watch->write = domain->xmit_conns[0]->m_write_fn;
     watch->read = domain->disc_conn_uc->m_read_fn;
     watch->calls = calls;
+    watch->listed = new_addrset();
+    struct Copy copy = {domain, watch->listed};
+    addrset_forall(domain->as_disc, CopyLocator, &copy);
     pthread_rwlock_wrlock(&lock);
     watch->next = first;
     first = watch;
@@ -386,7 +402,50 @@ void RabitCycloneUnwatch(void *watch)
         }
     }
     pthread_rwlock_unlock(&lock);
+    if (watch != NULL)
+    {
+        unref_addrset(((struct Watch *)watch)->listed);
+    }
     free(watch);
+}
+
+/* The locators of a set at one address: one for each interface. */
+struct AtPlace
+{
+    const struct RabitCyclonePlace *place;
+    size_t count;
+    ddsi_xlocator_t found[MostTargets];
+};
+
+static void FindAtPlace(const ddsi_xlocator_t *locator, void *argument)
+{
+    struct AtPlace *at = argument;
+    if (locator->c.kind == NN_LOCATOR_KIND_UDPv4 && locator->c.port == at->place->port &&
+        memcmp(locator->c.address + AddressAt, at->place->address, sizeof at->place->address) == 0 &&
+        at->count < MostTargets)
+    {
+        at->found[at->count++] = *locator;
+    }
+}
+
+void RabitCycloneAnnounceNoMoreTo(const void *watch, const struct RabitCyclonePlace *place)
+{
+    const struct Watch *of = watch;
+    if (of == NULL)
+    {
+        return;
+    }
+    struct AtPlace listed = {.place = place};
+    addrset_forall(of->listed, FindAtPlace, &listed);
+    struct AtPlace heard = {.place = place};
+    if (listed.count == 0)
+    {
+        addrset_forall(of->domain->as_disc, FindAtPlace, &heard);
+    }
+    for (size_t i = 0; i < heard.count; ++i)
+    {
+        remove_from_addrset(of->domain, of->domain->as_disc, &heard.found[i]);
+    }
 }
 
 static void Count(const ddsi_xlocator_t *locator, void *argument)

@@ -8,6 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "PeerAddresses.h"
+
 #ifdef __cplusplus
 extern "C"
 {
@@ -84,6 +86,9 @@ extern "C"
     /* Makes the vendor forget another participant, as if its lease had run out. Not with the vendor's locks
        held. */
     void RabitCycloneForget(const void *watch, const ddsi_guid_t *peer);
+
+    /* Announces own participants at that address no more, unless it is one of the domain's listed peers. */
+    void RabitCycloneAnnounceNoMoreTo(const void *watch, const struct RabitCyclonePlace *place);
 
     /* Until RabitCycloneWriteToAll, samples that this thread writes go to those of the participants alone
        that have readers of this writer, at the readers' own addresses. `type` is the type of the writer's

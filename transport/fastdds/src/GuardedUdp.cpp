@@ -23,6 +23,7 @@
 #include "common/HeldDatagrams.h"
 #include "common/KeyExchangeOutbox.h"
 #include "common/RecentNumbers.h"
+#include "common/RecentRoutes.h"
 #include "common/SendingSamples.h"
 #include "rtps/DiscoverySubmessages.h"
 
@@ -84,7 +85,8 @@ public:
           _descriptor(descriptor),
           _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod,
                  RtpsGuard::Requests::Checked, descriptor.Chosen().Goodbyes),
-          _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr)
+          _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr),
+          _listed(descriptor.Chosen().AnnouncementPeriod)
     {
         _descriptor.Chosen().Owed->Set([this] { SendOwed(); });
         if (MeetingThread *const meeting = Meeting())
@@ -98,20 +100,25 @@ public:
         if (AuthenticationThread *const authentication = Authentication())
         {
             _guard.SetAuthentication(*authentication);
-            authentication->Start(
-                {.IsAuthenticated =
-                     [this](const auto &peer)
-                 {
-                     const auto own = OwnAnnouncement();
-                     return !own.empty() && KeyAddressees::HasKeysOf(SenderOf(own), peer);
-                 },
-                 .IsWaiting =
-                     [this](const auto &peer)
-                 {
-                     const std::lock_guard lock(_sending);
-                     return _exchanges.IsWaiting(peer);
-                 },
-                 .Forget = [this](const auto &peer, auto number) { Forget(peer, number); }});
+            authentication->Start({.IsAuthenticated =
+                                       [this](const auto &peer)
+                                   {
+                                       const auto own = OwnAnnouncement();
+                                       return !own.empty() && KeyAddressees::HasKeysOf(SenderOf(own), peer);
+                                   },
+                                   .IsWaiting =
+                                       [this](const auto &peer)
+                                   {
+                                       const std::lock_guard lock(_sending);
+                                       return _exchanges.IsWaiting(peer);
+                                   },
+                                   .Forget = [this](const auto &peer, auto number) { Forget(peer, number); },
+                                   .Drop =
+                                       [this](const auto &peer)
+                                   {
+                                       const std::lock_guard lock(_sending);
+                                       _exchanges.Forget(peer);
+                                   }});
         }
     }
     ~GuardedUdp() override
@@ -190,10 +197,9 @@ public:
             {
                 _groups.emplace(sender, destination);
             }
-            else if (message.Announcement && _descriptor.Chosen().HasPeers &&
-                     _listed.size() < AnnouncementPace::MostDestinations)
+            else if (message.Announcement && _descriptor.Chosen().HasPeers)
             {
-                _listed.emplace(sender, destination);
+                _listed.Note({sender, destination}, now);
             }
         }
         if (message.Announcement)
@@ -284,10 +290,6 @@ private:
         const auto ours = GoodbyeAfter(own, peer);
         SendCard(peer, ours);
         SendCard(std::nullopt, ours);
-        {
-            const std::lock_guard lock(_sending);
-            _exchanges.Forget(peer);
-        }
         _descriptor.Chosen().Goodbyes->Note(peer, std::chrono::steady_clock::now());
         auto theirs = GoodbyeOf(peer, own, number);
         if (const Receiver receiver = LastReceiver(); receiver.Next != nullptr)
@@ -328,7 +330,8 @@ private:
             return;
         }
         std::for_each(_groups.begin(), _groups.end(), send);
-        std::for_each(_listed.begin(), _listed.end(), send);
+        const auto listed = _listed.Current(std::chrono::steady_clock::now());
+        std::for_each(listed.begin(), listed.end(), send);
     }
     Receiver LastReceiver()
     {
@@ -567,8 +570,7 @@ private:
     RecentNumbers<Route> _routes;  // of _exchanges
     // Routes of announcements to groups.
     std::set<Route> _groups;
-    // Other routes of announcements.
-    std::set<Route> _listed;
+    RecentRoutes<Route> _listed;  // other routes of announcements
     std::map<GuidPrefix, Route> _cardRoutes;
     std::vector<std::uint8_t> _announcement;  // our last one, if Authentication() wants it
     RecentNumbers<rtps::Locator_t> _destinations;

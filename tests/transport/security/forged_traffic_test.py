@@ -1,0 +1,148 @@
+#!/usr/bin/env python3
+"""Somebody announces participants at addresses where nobody has asked for anything. While the announced lease runs, a node
+may send there; after it, nothing may go there any more.
+
+Usage: forged_traffic_test.py RABIT NODE TRANSPORT...
+NODE is ../interop's. Prints the bytes that came to the addresses, IP headers included: in the lease, in the time that the node
+may need to notice its end, and after it. Skipped (exit code 77) where no network namespace can be made."""
+
+import os
+import pathlib
+import re
+import socket
+import struct
+import sys
+import tempfile
+import threading
+import time
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "integration"))
+import harness  # noqa: E402
+import wire as between  # noqa: E402
+from interop_keys import make_keys  # noqa: E402
+
+SKIPPED = 77
+LIMIT_S = 60
+NODES = ("first", "second")
+VICTIMS = [f"127.0.0.{number}" for number in range(70, 80)]
+PORT = 5555
+UNICAST, MULTICAST, LEASE, USER_DATA = (0x31, 0x32), (0x33, 0x48), 0x02, 0x2c
+HEADERS = 28
+LEASE_S = 5
+# A lease, and the vendors' timers.
+NOTICE_S = 10
+AFTER_S = 15
+
+
+class Loopback:
+    """Keeps the newest announcement of a participant in a domain, and counts what goes to the victims."""
+
+    def __init__(self):
+        self.announcements, self.bytes, self.kinds = {}, {}, {}
+        self._socket = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(0x0800))
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 8 << 20)
+        threading.Thread(target=self._read, daemon=True).start()
+
+    def _read(self):
+        while True:
+            frame, address = self._socket.recvfrom(70000)
+            ip = frame[between.ETHERNET:]
+            if address[2] == socket.PACKET_OUTGOING or ip[9] != between.UDP:
+                continue
+            udp = 4 * (ip[0] & 15)
+            size, port = struct.unpack_from("!H", ip, 2)[0], struct.unpack_from("!H", ip, udp + 2)[0]
+            datagram = ip[udp + 8:size]
+            if socket.inet_ntoa(ip[16:20]) in VICTIMS:
+                self.bytes[port] = self.bytes.get(port, 0) + size
+                self.kinds.setdefault(port, []).append((time.monotonic(), size, [hex(each.kind) + each.writer.hex() for each in between.submessages(datagram)]))
+            elif between.is_rtps(datagram) and any(each.kind == between.DATA and each.writer == between.ANNOUNCEMENT
+                                                   for each in between.submessages(datagram)):
+                self.announcements[(port - 7400) // 250] = datagram
+
+
+def forged(datagram, host, port, with_group, plain):
+    """The announcement of another participant, at that address; if `plain`, of a program that is no node."""
+    out = bytearray(datagram)
+    for each in between.submessages(out):
+        if each.kind == between.DATA and each.writer == between.ANNOUNCEMENT:
+            found, order = between.parameters(out, each)
+            for number, at, _ in found:
+                if number in UNICAST:
+                    struct.pack_into(order + "I", out, at + 8, port)
+                    out[at + 24:at + 28] = socket.inet_aton(host)
+                elif number in MULTICAST and not with_group:
+                    struct.pack_into(order + "H", out, at, 0)
+                elif number == USER_DATA and plain:
+                    struct.pack_into(order + "H", out, at, 0)
+                elif number == LEASE:
+                    struct.pack_into(order + "iI", out, at + 4, LEASE_S, 0)
+    prefix = bytes(out[8:20])
+    return bytes(out).replace(prefix, prefix[:6] + os.urandom(6))
+
+
+class Case:
+    def __init__(self, programs, transport, domain, name, options, secured):
+        self.rabit, self.node = programs
+        self.transport, self.domain, self.name, self.options, self.secured = transport, domain, name, options, secured
+        self.loopback = None
+        self.failure, self.said = None, ""
+
+    def run(self):
+        try:
+            with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
+                self.measure(pathlib.Path(folder), processes)
+        except Exception as error:  # the others go on
+            self.failure = harness.reason(error)
+
+    def measure(self, folder, processes):
+        if self.secured:
+            make_keys(self.rabit, folder, [(name, self.transport) for name in NODES], self.domain)
+        running = [processes.start([self.node, "--node", name, "--other", other, "--transport", self.transport, "--interface",
+                                    "127.0.0.1", "--domain", self.domain, "--no-frame", "--lease", 5, *self.options,
+                                    *(["--keys", folder / "keys" / name] if self.secured else [])])
+                   for name, other in (NODES, NODES[::-1])]
+        for each in running:
+            each.wait_for(re.compile("peer UP").fullmatch, LIMIT_S)
+        harness.until(lambda: self.loopback.announcements.get(self.domain), LIMIT_S)
+        port = PORT + self.domain
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            sent = 0
+            for number in range(10):
+                for with_group in (True, False):
+                    datagram = forged(self.loopback.announcements[self.domain], VICTIMS[number], port, with_group, not self.secured)
+                    for participant in (0, 1):
+                        sender.sendto(datagram, ("127.0.0.1", 7410 + 250 * self.domain + 2 * participant))
+                        sent += len(datagram) + HEADERS
+        came = []
+        for wait in (LEASE_S, NOTICE_S, AFTER_S):
+            before = self.loopback.bytes.get(port, 0)
+            time.sleep(wait)
+            came.append(self.loopback.bytes.get(port, 0) - before)
+        self.said = f"{sent} bytes of announcements; {', '.join(map(str, came))} bytes came"
+        late = [kinds for when, _, kinds in self.loopback.kinds.get(port, []) if when > time.monotonic() - AFTER_S]
+        assert came[-1] == 0, f"{self.said}: {len(late)} late datagrams, such as {late[:6]}"
+        assert came[0] > 0, "nothing came to the forged addresses, so the test shows nothing"
+
+
+def main():
+    programs, transports = sys.argv[1:3], sys.argv[3:]
+    harness.enter_namespace()
+    if os.environ[harness.IN_NAMESPACE] != "yes":
+        sys.exit(SKIPPED)
+    kinds = [("multicast", []), ("peers", ["--peer", "127.0.0.1"]), ("peers alone", ["--peer", "127.0.0.1", "--no-multicast"])]
+    wanted = [(transport, name, options, secured) for transport in transports for name, options in kinds
+              for secured in (False, True)]
+    cases = [Case(programs, transport, domain, name, options, secured)
+             for domain, (transport, name, options, secured) in enumerate(wanted)]
+    loopback = Loopback()
+    for case in cases:
+        case.loopback = loopback
+    harness.run_at_once(cases)
+    for case in cases:
+        print(f"{case.transport}, {case.name}, {'keys' if case.secured else 'no keys'}: {case.failure or case.said}")
+    sys.exit(1 if any(case.failure for case in cases) else 0)
+
+
+if __name__ == "__main__":
+    main()
