@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Somebody who has taken over uav2, with its keys, in a fleet of uav1 and ground: messages that are signed as a whole with
-uav2's own key, and in which others speak. No node obeys them, each reports them, and the others' traffic goes on. The
+uav2's own key, and in which others speak. No node obeys them, each counts every kind of them, and the others' traffic goes on. The
 signatures are right: first one of uav2's own datagrams is made once more, and is the same.
 
 Usage: forged_member_test.py RABIT LEDGER_NODE LEAKED_KEYS TRANSPORT...
@@ -11,10 +11,12 @@ import collections
 import ctypes
 import os
 import pathlib
+import re
 import socket
 import struct
 import sys
 import threading
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
@@ -32,6 +34,9 @@ PARTICIPANT = bytes.fromhex("000001c1")
 FORGED = 10 ** 15  # number of a tick
 FAR = 1_000_000
 TICK_SIZE = 16  # encapsulation, number, and no padding
+DROPPED = re.compile(r".*a datagram that is no sound RTPS message was dropped(?: \((\d+) of this kind so far\))?")
+KINDS = ("a goodbye of another", "a goodbye of another, without a name", "heartbeat", "gap", "sample", "heartbeat without a name",
+         "gap without a name")
 SAME_FORGERY_TIMES = 4  # what is repeated three times might be believed
 
 
@@ -198,6 +203,25 @@ class Takeover(base.Case):
         self.seen = Seen(domain)
 
 
+def counted(node):
+    """How many datagrams a node says that it has dropped. It says so of the 1st, the 2nd, the 4th, the 8th ..."""
+    found = [DROPPED.fullmatch(line) for line in node.said()]
+    return max((int(match.group(1) or 1) for match in found if match), default=0)
+
+
+def forge_until_counted(case, nodes, kind, send):
+    """Sends one kind of forgery, and nothing else, until the count of each node has doubled."""
+    before = {node: counted(node) for node in nodes}
+    sent, end = 0, time.monotonic() + base.LIMIT_S
+    while any(counted(node) <= before[node] for node in nodes):
+        assert time.monotonic() < end, f"{kind}: sent {sent} datagrams, but {[(node.name, counted(node)) for node in nodes]}"
+        sent += len(send())
+        time.sleep(0.1)
+    for node in nodes:
+        case.note(node, f"{kind}: {sent} datagrams were sent to all; {node.name} had dropped {before[node]}, and now "
+                        f"at least {counted(node)}")
+
+
 def forge(case):
     """signs messages in which others speak;"""
     endless = ["--sign", "--ticks", "--count", 1000000, "--rate", 20]
@@ -213,16 +237,16 @@ def forge(case):
     # Both have sent ticks by now.
     others = harness.until(lambda: [each for each in case.seen.others(signer.prefix) if each[1]], base.LIMIT_S)
     out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    made = collections.Counter()
+    kinds = collections.defaultdict(list)
     for victim, writers in others:
         for kind, body in forgeries(signer.prefix, victim, writers):
-            for _ in range(SAME_FORGERY_TIMES):
-                for port in case.seen.receivers():
-                    out.sendto(signer.message(body), ("127.0.0.1", port))
-            made[kind] += 1
-    case.note(thief, ", ".join(f"{count} x {kind}" for kind, count in made.items()))
-    for node in (uav1, ground):
-        case.note(node, node.says("no sound RTPS message was dropped"))
+            kinds[kind].append(body)
+    missing = set(KINDS) - set(kinds)
+    assert not missing, f"nothing was made of these kinds: {missing}"
+    for kind, bodies in kinds.items():
+        forge_until_counted(case, (uav1, ground), kind, lambda bodies=bodies: [
+            out.sendto(signer.message(body), ("127.0.0.1", port))
+            for body in bodies for _ in range(SAME_FORGERY_TIMES) for port in case.seen.receivers()])
     base.goes_on(uav1, ground)
     for node, other in ((uav1, "ground"), (ground, "uav1")):
         ticks = f"tick from={other} .*"
