@@ -34,16 +34,6 @@ void ByteArrayWriter::Clear()
     Idx = 0;
 }
 
-std::uint8_t *ByteArrayWriter::GetByteArrayAddrPtrAtIdx()
-{
-    return ByteArray + Idx;
-}
-
-int ByteArrayWriter::GetNumberBytesAvailable()
-{
-    return std::max(0, ByteArraySize - Idx);
-}
-
 bool ByteArrayWriter::HasRoomFor(std::int64_t bytes) const
 {
     return Idx >= 0 && bytes <= static_cast<std::int64_t>(ByteArraySize) - Idx;
@@ -65,74 +55,20 @@ int ByteArrayWriter::WriteBytes(std::uint8_t data[], int arraySize, int startIdx
     return count;
 }
 
-template <typename T>
-bool ByteArrayWriter::WriteValue(T value)
+bool ByteArrayWriter::Write(const void *value, std::size_t size)
 {
-    constexpr int size = static_cast<int>(sizeof(T));
-    if (!HasRoomFor(size))
+    const int length = static_cast<int>(size);
+    if (!HasRoomFor(length))
     {
         return true;
     }
-    std::memcpy(ByteArray + Idx, &value, sizeof(T));
+    std::memcpy(ByteArray + Idx, value, size);
     if (_endianOrder != GetSystemEndianness())
     {
-        std::reverse(ByteArray + Idx, ByteArray + Idx + size);
+        std::reverse(ByteArray + Idx, ByteArray + Idx + length);
     }
-    Idx += size;
+    Idx += length;
     return false;
-}
-
-bool ByteArrayWriter::writeByte(byte value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeBool(bool value)
-{
-    return WriteValue(static_cast<std::uint8_t>(value ? 1 : 0));
-}
-bool ByteArrayWriter::writeChar(char value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeInt8(std::int8_t value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeUInt8(std::uint8_t value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeInt16(std::int16_t value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeUInt16(std::uint16_t value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeInt32(std::int32_t value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeUInt32(std::uint32_t value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeInt64(std::int64_t value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeUInt64(std::uint64_t value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeFloat(float value)
-{
-    return WriteValue(value);
-}
-bool ByteArrayWriter::writeDouble(double value)
-{
-    return WriteValue(value);
 }
 
 bool ByteArrayWriter::writeString(const std::string &value)
@@ -151,7 +87,7 @@ bool ByteArrayWriter::writeString(const char *value, int length)
     {
         return true;
     }
-    WriteValue(static_cast<std::uint16_t>(length));
+    writeUInt16(static_cast<std::uint16_t>(length));
     std::copy_n(value, length, ByteArray + Idx);
     Idx += length;
     return false;
@@ -162,92 +98,20 @@ ByteArrayReader::ByteArrayReader(std::uint8_t *byteArray, int size, EndianOrder_
 {
 }
 
-void ByteArrayReader::Clear()
+void ByteArrayReader::Read(void *value, std::size_t size)
 {
-    Idx = 0;
-}
-
-std::uint8_t *ByteArrayReader::GetByteArrayAddrPtrAtIdx()
-{
-    return ByteArray + Idx;
-}
-
-int ByteArrayReader::GetNumberBytesAvailable()
-{
-    return std::max(0, ByteArraySize - Idx);
-}
-
-template <typename T>
-T ByteArrayReader::ReadValue()
-{
-    constexpr int size = static_cast<int>(sizeof(T));
-    if (Idx < 0 || GetNumberBytesAvailable() < size)
+    const int length = static_cast<int>(size);
+    if (Idx < 0 || GetNumberBytesAvailable() < length)
     {
-        return T{};
+        return;
     }
-    std::uint8_t bytes[sizeof(T)];
-    std::copy_n(ByteArray + Idx, size, bytes);
+    std::uint8_t *bytes = static_cast<std::uint8_t *>(value);
+    std::memcpy(bytes, ByteArray + Idx, size);
     if (_endianOrder != GetSystemEndianness())
     {
         std::reverse(bytes, bytes + size);
     }
-    T value;
-    std::memcpy(&value, bytes, sizeof(T));
-    Idx += size;
-    return value;
-}
-
-byte ByteArrayReader::readByte()
-{
-    return ReadValue<byte>();
-}
-bool ByteArrayReader::readBool()
-{
-    return ReadValue<std::uint8_t>() != 0;
-}
-char ByteArrayReader::readChar()
-{
-    return ReadValue<char>();
-}
-std::int8_t ByteArrayReader::readInt8()
-{
-    return ReadValue<std::int8_t>();
-}
-std::uint8_t ByteArrayReader::readUInt8()
-{
-    return ReadValue<std::uint8_t>();
-}
-std::int16_t ByteArrayReader::readInt16()
-{
-    return ReadValue<std::int16_t>();
-}
-std::uint16_t ByteArrayReader::readUInt16()
-{
-    return ReadValue<std::uint16_t>();
-}
-std::int32_t ByteArrayReader::readInt32()
-{
-    return ReadValue<std::int32_t>();
-}
-std::uint32_t ByteArrayReader::readUInt32()
-{
-    return ReadValue<std::uint32_t>();
-}
-std::int64_t ByteArrayReader::readInt64()
-{
-    return ReadValue<std::int64_t>();
-}
-std::uint64_t ByteArrayReader::readUInt64()
-{
-    return ReadValue<std::uint64_t>();
-}
-float ByteArrayReader::readFloat()
-{
-    return ReadValue<float>();
-}
-double ByteArrayReader::readDouble()
-{
-    return ReadValue<double>();
+    Idx += length;
 }
 
 // The length of the string at the position, read from its 2 bytes of length; -1 if its bytes do not all lie
