@@ -1,6 +1,6 @@
 // Counts the calls of malloc and its relatives by taking their place, so calls of the vendors' libraries
-// count too. Linked into every contestant alike. Sanitizers bring an allocator of their own: with them
-// nothing is counted.
+// count too. Linked into every contestant alike, and into tests. Sanitizers bring an allocator of their own:
+// with them nothing is counted.
 #include "Usage.h"
 
 #include <atomic>

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "../AllocationCount.h"
+#include "../../bench/common/Usage.h"
 #include "air/AirSchedule.h"
 #include "air/CapacityEstimate.h"
 
@@ -44,7 +44,7 @@ TEST(AirAllocation, NothingIsAllocatedForADatagram)
         schedule.NotReady(streams[0]);
     };
     turn();
-    const std::size_t before = AllocationsSoFar();
+    const std::uint64_t before = Bench::AllocationsSoFar();
     for (int i = 0; i < 300; ++i)
     {
         if (i == 100)
@@ -57,7 +57,7 @@ TEST(AirAllocation, NothingIsAllocatedForADatagram)
         }
         turn();
     }
-    EXPECT_EQ(AllocationsSoFar(), before);
+    EXPECT_EQ(Bench::AllocationsSoFar(), before);
     EXPECT_GT(sent, 14'000u);
 }
 

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "../AllocationCount.h"
+#include "../../bench/common/Usage.h"
 
 namespace Rabit::Test
 {
@@ -74,9 +74,9 @@ TEST(LinkAllocation, a_message_in_the_steady_state_costs_none)
         }
     };
     exchange(1000);
-    const std::size_t before = AllocationsSoFar();
+    const std::uint64_t before = Bench::AllocationsSoFar();
     exchange(10000);
-    EXPECT_EQ(AllocationsSoFar(), before);
+    EXPECT_EQ(Bench::AllocationsSoFar(), before);
     EXPECT_EQ(a.Outcomes, 22000U);
 }
 
