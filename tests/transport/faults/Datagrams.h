@@ -22,6 +22,12 @@ struct Fault
     std::vector<Bytes> Datagrams;
 };
 
+// The parameters of a participant's announcement, with its builtin endpoints (RTPS 2.3, 9.3.2) and `more`.
+// The vendor's answers go to port 9, which discards them.
+Bytes Announced(std::uint32_t endpoints, const Bytes &more);
+// Those of announcements and liveliness.
+constexpr std::uint32_t BuiltinEndpoints = 0x0c3f;
+
 // A sound announcement of the participant that sends the others: the vendor then listens to its writers of
 // endpoints and of liveliness.
 Bytes Announcement();

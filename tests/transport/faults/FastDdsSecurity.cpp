@@ -7,7 +7,6 @@ namespace Faults
 
 using namespace RtpsBytes;
 using Rabit::Rtps::HandshakeWriter;
-using Rabit::Rtps::ParticipantEntity;
 using Rabit::Rtps::ParticipantWriter;
 
 namespace
@@ -27,21 +26,13 @@ constexpr std::uint32_t Countless = 0x800000;
 // An announcement of a participant with the two tokens that authentication begins with.
 Bytes ParticipantWith(const Bytes &identity, const Bytes &permissions)
 {
-    // Those of announcements and liveliness, and the two through which participants authenticate each other.
-    constexpr std::uint32_t BuiltinEndpoints = 0x0fc00c3f;
+    // The two through which participants authenticate each other.
+    constexpr std::uint32_t AuthenticationEndpoints = 0x0fc00000;
     // Both sides must protect the same. Participants announce that in plain, so anybody can copy it.
+    const Bytes tokens = Join({Parameter(IdentityToken, identity), Parameter(PermissionsToken, permissions),
+                               Parameter(SecurityInfo, Join({U32(0x80000007), U32(0x80000006)}))});
     return Message(
-        Data,
-        DataBody(1,
-                 List({Parameter(0x0015, {2, 3, 0, 0}), Parameter(0x0016, {1, 15, 0, 0}),
-                       Parameter(0x0050, Guid(Sender, ParticipantEntity)),
-                       Parameter(0x0002, Join({U32(20), U32(0)})),
-                       Parameter(0x0032, Join({U32(1), U32(9), Bytes(12), {127, 0, 0, 1}})),
-                       Parameter(0x0031, Join({U32(1), U32(9), Bytes(12), {127, 0, 0, 1}})),
-                       Parameter(0x0058, U32(BuiltinEndpoints)), Parameter(IdentityToken, identity),
-                       Parameter(PermissionsToken, permissions),
-                       Parameter(SecurityInfo, Join({U32(0x80000007), U32(0x80000006)}))}),
-                 ParticipantWriter),
+        Data, DataBody(1, Announced(BuiltinEndpoints | AuthenticationEndpoints, tokens), ParticipantWriter),
         HasData);
 }
 
