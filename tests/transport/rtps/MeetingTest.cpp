@@ -246,65 +246,56 @@ private:
     std::size_t _turn = 0;
 };
 
-TEST(Meeting, TwoNodesKnowEachOthersEndpointsAfterTwoCards)
+class MeetingOfTwo : public testing::Test
 {
-    Air air(1);
-    Air::Node &one = air.Add(1, 8);
-    Air::Node &two = air.Add(2, 8);
-    one.Dds->Announce();
-    two.Dds->Announce();
-    EXPECT_TRUE(air.Until([&] { return air.AllKnowAll(8); }, 100ms));
+protected:
+    MeetingOfTwo()
+    {
+        One.Dds->Announce();
+        Two.Dds->Announce();
+    }
+
+    Air Channel{1};
+    Air::Node &One = Channel.Add(1, 8);
+    Air::Node &Two = Channel.Add(2, 8);
+};
+
+TEST_F(MeetingOfTwo, TwoNodesKnowEachOthersEndpointsAfterTwoCards)
+{
+    EXPECT_TRUE(Channel.Until([&] { return Channel.AllKnowAll(8); }, 100ms));
 }
 
-TEST(Meeting, TheImplementationIsToldThatAllWasAcknowledged)
+TEST_F(MeetingOfTwo, TheImplementationIsToldThatAllWasAcknowledged)
 {
-    Air air(1);
-    Air::Node &one = air.Add(1, 8);
-    Air::Node &two = air.Add(2, 3);
-    one.Dds->Announce();
-    two.Dds->Announce();
-    EXPECT_TRUE(air.Until(
-        [&] { return one.Dds->IsAcknowledgedBy(two.Self) && two.Dds->IsAcknowledgedBy(one.Self); }));
+    EXPECT_TRUE(Channel.Until(
+        [&] { return One.Dds->IsAcknowledgedBy(Two.Self) && Two.Dds->IsAcknowledgedBy(One.Self); }));
 }
 
-TEST(Meeting, NothingButSummariesGoesOnceAllIsKnown)
+TEST_F(MeetingOfTwo, NothingButSummariesGoesOnceAllIsKnown)
 {
-    Air air(1);
-    air.Add(1, 8).Dds->Announce();
-    air.Add(2, 8).Dds->Announce();
-    air.Run(20s);
-    ASSERT_TRUE(air.AllKnowAll(8));
-    air.Offered = 0;
-    air.Run(60s);
-    EXPECT_LE(air.Offered, 2u * 7u * 80u);
+    Channel.Run(20s);
+    ASSERT_TRUE(Channel.AllKnowAll(8));
+    Channel.Offered = 0;
+    Channel.Run(60s);
+    EXPECT_LE(Channel.Offered, 2u * 7u * 80u);
 }
 
-TEST(Meeting, AnEndpointThatComesLaterIsKnownSoon)
+TEST_F(MeetingOfTwo, AnEndpointThatComesLaterIsKnownSoon)
 {
-    Air air(1);
-    Air::Node &one = air.Add(1, 2);
-    Air::Node &two = air.Add(2, 2);
-    one.Dds->Announce();
-    two.Dds->Announce();
-    air.Run(20s);
-    one.Dds->AddWriter(0x00007703);
-    EXPECT_TRUE(air.Until([&] { return two.Dds->EndpointsOf(one.Self).contains(0x00007703); }, 100ms));
+    Channel.Run(20s);
+    One.Dds->AddWriter(0x00007703);
+    EXPECT_TRUE(Channel.Until([&] { return Two.Dds->EndpointsOf(One.Self).contains(0x00007703); }, 100ms));
 }
 
 // A goodbye may be forged.
-TEST(Meeting, ANodeThatGoesOnAfterItsGoodbyeIsMetAgain)
+TEST_F(MeetingOfTwo, ANodeThatGoesOnAfterItsGoodbyeIsMetAgain)
 {
-    Air air(1);
-    Air::Node &one = air.Add(1, 3);
-    Air::Node &two = air.Add(2, 3);
-    one.Dds->Announce();
-    two.Dds->Announce();
-    air.Run(20s);
-    two.Meet->SaidGoodbye(one.Self, air.Now);
-    one.Dds->Announce();
-    air.Run(1900ms);
-    EXPECT_FALSE(two.Meet->IsReplayed(one.Self));
-    EXPECT_TRUE(air.Until([&] { return two.Meet->IsReplayed(one.Self); }));
+    Channel.Run(20s);
+    Two.Meet->SaidGoodbye(One.Self, Channel.Now);
+    One.Dds->Announce();
+    Channel.Run(1900ms);
+    EXPECT_FALSE(Two.Meet->IsReplayed(One.Self));
+    EXPECT_TRUE(Channel.Until([&] { return Two.Meet->IsReplayed(One.Self); }));
 }
 
 TEST(Meeting, ALostCardIsAskedFor)
@@ -451,19 +442,14 @@ TEST(Meeting, AProgramWithoutACardGetsTheImplementationsOwnDatagrams)
     EXPECT_TRUE(air.Until([&] { return air.AllKnowAll(3); }, 3s));
 }
 
-TEST(Meeting, AParticipantThatWasForgottenOnTheWayIsToldOfAgain)
+TEST_F(MeetingOfTwo, AParticipantThatWasForgottenOnTheWayIsToldOfAgain)
 {
-    Air air(1);
-    Air::Node &one = air.Add(1, 3);
-    Air::Node &two = air.Add(2, 3);
-    one.Dds->Announce();
-    two.Dds->Announce();
-    ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(3); }));
-    two.Dds = std::make_unique<Implementation>(
-        two.Self, [&](const Bytes &message) { two.Meet->Sending(message, air.Now); });
-    ASSERT_FALSE(two.Dds->Knows(one.Self));
-    two.Meet->HeardUnknown(one.Self, air.Now);
-    EXPECT_TRUE(air.Until([&] { return two.Dds->EndpointsOf(one.Self).size() == 3; }, 500ms));
+    ASSERT_TRUE(Channel.Until([&] { return Channel.AllKnowAll(8); }));
+    Two.Dds = std::make_unique<Implementation>(
+        Two.Self, [&](const Bytes &message) { Two.Meet->Sending(message, Channel.Now); });
+    ASSERT_FALSE(Two.Dds->Knows(One.Self));
+    Two.Meet->HeardUnknown(One.Self, Channel.Now);
+    EXPECT_TRUE(Channel.Until([&] { return Two.Dds->EndpointsOf(One.Self).size() == 8; }, 500ms));
 }
 
 TEST(Meeting, ACardThatCameFromElsewhereIsNotBelievedBeforeItCameOften)
@@ -512,18 +498,13 @@ TEST(Meeting, InventedParticipantsCauseFewRequests)
     EXPECT_LE(air.Offered, 6u * 2000u);
 }
 
-TEST(Meeting, WhatAnEarlierSessionOfANodeSaidEndsOnceItIsSilent)
+TEST_F(MeetingOfTwo, WhatAnEarlierSessionOfANodeSaidEndsOnceItIsSilent)
 {
-    Air air(1);
-    Air::Node &one = air.Add(1, 3);
-    Air::Node &two = air.Add(2, 3);
-    one.Dds->Announce();
-    two.Dds->Announce();
-    ASSERT_TRUE(air.Until([&] { return air.AllKnowAll(3); }));
-    EXPECT_TRUE(two.Meet->Endable().empty());
-    two.Meet->End(one.Self);
-    EXPECT_TRUE(two.Meet->WasEnded(one.Self));
-    EXPECT_TRUE(air.Until([&] { return !two.Dds->Knows(one.Self); }, 100ms));
+    ASSERT_TRUE(Channel.Until([&] { return Channel.AllKnowAll(8); }));
+    EXPECT_TRUE(Two.Meet->Endable().empty());
+    Two.Meet->End(One.Self);
+    EXPECT_TRUE(Two.Meet->WasEnded(One.Self));
+    EXPECT_TRUE(Channel.Until([&] { return !Two.Dds->Knows(One.Self); }, 100ms));
 }
 
 }  // namespace
