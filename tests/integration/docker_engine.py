@@ -23,9 +23,9 @@ CONTROL_GROUPS = pathlib.Path("/sys/fs/cgroup")
 
 
 def packages(name):
-    """Those listed in docker/<name>."""
+    """Those listed in docker/<name>, of alternatives the last one, which is Debian 12's."""
     lines = (ROOT / "docker" / name).read_text().splitlines()
-    return [line.strip() for line in lines if line.strip() and not line.startswith("#")]
+    return [line.split("|")[-1].strip() for line in lines if line.strip() and not line.startswith("#")]
 
 
 class Engine:
