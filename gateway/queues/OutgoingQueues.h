@@ -13,6 +13,7 @@
 
 #include "gateway.idl.h"
 #include "presence/RemoteQueues.h"
+#include "queues/EarlyMessages.h"
 #include "queues/LinkDriver.h"
 #include "queues/LinkPayloadPool.h"
 #include "queues/RefusalCounts.h"
@@ -21,9 +22,11 @@ namespace Rabit
 {
 
 // Queues of other nodes, as the managers of this one see them: takes a message added to `<node>/<queue>`,
-// encodes it once, and passes it to the links, or refuses it at the call with a reason.
+// encodes it once, and passes it to the links, or refuses it at the call with a reason. A message for a node
+// from which queue messages came, and whose announcement has not arrived, is accepted and waits for it.
 //
-// Threads: any manager's thread calls Forward; Status and Problems are for any.
+// Threads: any manager's thread calls Forward; Status and Problems are for any. The rest is for the gateway's
+// thread.
 class OutgoingQueues final : public QueueForwarder
 {
 public:
@@ -39,8 +42,13 @@ public:
     std::vector<std::string> Known(const std::string &queueName, const RabitMessage &message) const override;
     void TakenElsewhere(const std::string &queueName) override;
 
-    // The node is remembered no longer.
-    void Forget(const std::string &node) { _refusals.Forget(node); }
+    // Sends the messages that waited for an announcement which has come, and refuses those that waited for
+    // EarlyMessages::LongestWait. After each look at presence.
+    void Serve();
+    // The node is remembered no longer: messages that wait for its announcement are refused.
+    void Forget(const std::string &node);
+    // Messages that still wait expire. After the last Forward.
+    void Close();
 
     // All links to other nodes, with the messages that were refused before they reached a link.
     std::vector<Gateway::LinkStatus> Status() const;
@@ -53,6 +61,8 @@ private:
     // The receipt has had its Begin for this message.
     bool ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
                    const LinkPayload &payload, const Receipt &receipt);
+    // Enqueues a message that has waited, or settles it as refused.
+    void SendWaited(const EarlyMessages::Message &message);
     bool ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload,
                       const Receipt &receipt);
     void TellRefused(const std::string &node, const std::string &queue, const MessageType &type,
@@ -66,6 +76,7 @@ private:
     const RemoteQueues &_remote;
     LinkDriver &_links;
     const std::shared_ptr<LinkPayloadPool> _payloads = std::make_shared<LinkPayloadPool>();
+    EarlyMessages _early;
     RefusalCounts _refusals;
     const std::shared_ptr<GatewayTap> _tap;
 };

@@ -209,6 +209,106 @@ TEST_F(QueueTest, AnUnknownNodeIsRefusedAndNamed)
                 HasSubstr("send uav7/MissionControl: no node `uav7` has announced itself"));
 }
 
+// Answers each Goto at once.
+class PromptAnswerer : public RabitManager
+{
+public:
+    using RabitManager::RabitManager;
+    void ExecuteUnitOfWork() final
+    {
+        std::shared_ptr<RabitMessage> message;
+        while (GetManagerMessageQueue()->GetMessage(message))
+        {
+            const auto command = std::dynamic_pointer_cast<Uav::Goto>(message);
+            auto answer = std::make_shared<Uav::CommandAck>();
+            answer->id = command->id;
+            Receipts.push_back(std::make_shared<RabitQueueReceipt>());
+            AreAccepted = AddMessageToQueue(command->reply_to, answer, Receipts.back()) && AreAccepted;
+        }
+    }
+    bool AreAccepted = true;
+    std::vector<std::shared_ptr<RabitQueueReceipt>> Receipts;
+};
+
+// A node that sends its first messages before its announcement has arrived.
+class EarlySenderTest : public ::testing::Test
+{
+protected:
+    EarlySenderTest() : uav(fleet.Add(AircraftConfig("uav1")))
+    {
+        auto manager = std::make_unique<PromptAnswerer>("MissionControl", uav.Workspace);
+        answerer = manager.get();
+        uav.Reactor.AddManager(std::move(manager));
+        fleet.RunFor(2s);
+        GatewayConfig config = GroundConfig();
+        config.Node = "ground2";
+        ground = &fleet.Add(config);
+        commands = &ground->AddIdleManager("Commands");
+    }
+
+    // Sends a request as soon as ground2 knows uav1, and runs until it has come.
+    void SendEarly(const std::string &replyTo = "ground2/Commands")
+    {
+        auto message = std::make_shared<Uav::Goto>();
+        message->reply_to = replyTo;
+        ASSERT_TRUE(fleet.RunUntil(
+            [&] { return ground->Workspace.AddMessageToQueue("uav1/MissionControl", message); }, 5s));
+        ASSERT_TRUE(fleet.RunUntil([&] { return !answerer->Receipts.empty(); }, 5s));
+    }
+
+    SimulatedFleet fleet;
+    SimulatedNode &uav;
+    PromptAnswerer *answerer;
+    SimulatedNode *ground;
+    IdleManager *commands;
+};
+
+TEST_F(EarlySenderTest, AReplyWaitsForTheAnnouncementOfTheNodeThatAsked)
+{
+    SendEarly();
+    EXPECT_TRUE(answerer->AreAccepted);
+    EXPECT_EQ(answerer->Receipts.front()->Outcome(), QueueOutcome::Pending);
+    fleet.RunFor(3s);
+    EXPECT_EQ(answerer->Receipts.front()->Outcome(), QueueOutcome::Delivered);
+    EXPECT_EQ(commands->GetManagerMessageQueue()->NoMessagesInQueue(), 1u);
+}
+
+TEST_F(EarlySenderTest, AReplyForAQueueThatIsNotAnnouncedThenIsRefused)
+{
+    SendEarly("ground2/Orders");
+    fleet.RunFor(3s);
+    EXPECT_EQ(answerer->Receipts.front()->Outcome(), QueueOutcome::Refused);
+    EXPECT_THAT(uav.Problems(), HasSubstr("send ground2/Orders: ground2 accepts no queue `Orders`"));
+}
+
+TEST_F(EarlySenderTest, AReplyToANodeThatFallsSilentBeforeItsAnnouncementIsRefused)
+{
+    SendEarly();
+    fleet.Network.SetFaults("ground2", "*", {.Cut = true});
+    fleet.RunFor(11s);
+    EXPECT_EQ(answerer->Receipts.front()->Outcome(), QueueOutcome::Refused);
+}
+
+TEST_F(EarlySenderTest, AReplyThatStillWaitsWhenTheGatewayEndsExpires)
+{
+    SendEarly();
+    const auto receipt = answerer->Receipts.front();
+    fleet.Stop("uav1");
+    EXPECT_EQ(receipt->Outcome(), QueueOutcome::Expired);
+}
+
+TEST_F(EarlySenderTest, RepliesThatWaitAreBounded)
+{
+    SendEarly();
+    int accepted = 0;
+    while (accepted < 5000 &&
+           uav.Workspace.AddMessageToQueue("ground2/Commands", std::make_shared<Uav::CommandAck>()))
+    {
+        ++accepted;
+    }
+    EXPECT_EQ(accepted, 999);
+}
+
 TEST_F(QueueTest, AQueueThatIsNotAcceptedIsRefusedAndNamed)
 {
     EXPECT_FALSE(SendGoto(1, "uav1/Missions"));

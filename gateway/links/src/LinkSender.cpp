@@ -30,7 +30,8 @@ LinkSender::LinkSender(LinkContext &context, PathControl &path, const std::uint6
 }
 
 // Rule S1: full by count or bytes -> refuse, change nothing else.
-LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now)
+LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now,
+                                LinkTime waited)
 {
     ExpireWaiting(now);
     const std::size_t bytes = payload ? payload->Size() : 0;
@@ -58,7 +59,7 @@ LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkP
     {
         _probe = true;  // something new need not wait for a timer that has backed off
     }
-    const LinkTime expiresAt = _options.Expire > LinkTime(0) ? now + _options.Expire : LinkNever;
+    const LinkTime expiresAt = _options.Expire > LinkTime(0) ? now + _options.Expire - waited : LinkNever;
     _outbox.Add({.Id = id,
                  .ExpiresAt = expiresAt,
                  .Type = &type,
