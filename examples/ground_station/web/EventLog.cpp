@@ -30,6 +30,13 @@ StationEvent::Weight WeightOf(RowState state)
     return StationEvent::Weight::Info;
 }
 
+// A search goes on until another command comes.
+std::string WordOf(OrderKind kind, CommandProgress progress)
+{
+    return kind == OrderKind::ORDER_SEARCH && progress == CommandProgress::PROGRESS_DONE ? "begun"
+                                                                                         : WireName(progress);
+}
+
 StationEvent::Weight WeightOf(CommandProgress progress)
 {
     switch (progress)
@@ -72,7 +79,7 @@ void EventLog::LookAtAircraft(const AircraftData &aircraft)
     if (known.State != aircraft.State)
     {
         if (known.State || aircraft.State != RowState::Waiting)
-            Add(WeightOf(aircraft.State), aircraft.Node,
+            Add(aircraft.Replay ? Weight::Info : WeightOf(aircraft.State), aircraft.Node,
                 WithReason(boost::algorithm::to_upper_copy(std::string(WireName(aircraft.State))),
                            aircraft.Reason));
         known.State = aircraft.State;
@@ -99,10 +106,11 @@ void EventLog::LookAtAircraft(const AircraftData &aircraft)
     if (aircraft.Health && known.WantsHome != aircraft.Health.Content->wants_home)
     {
         known.WantsHome = aircraft.Health.Content->wants_home;
+        if (known.WantsHome)
+            known.HomeReason = aircraft.Health.Content->reason;
         Add(known.WantsHome ? Weight::Warning : Weight::Info, aircraft.Node,
-            WithReason(
-                known.WantsHome ? "goes home for a reason of its own" : "has no reason to go home any more",
-                known.WantsHome ? aircraft.Health.Content->reason : ""));
+            WithReason(known.WantsHome ? "goes home by itself" : "need not be at home any more; this is over",
+                       known.HomeReason));
     }
 }
 
@@ -139,24 +147,40 @@ void EventLog::LookAtCommands(const CommandList &list)
         for (std::size_t i = known == _commands.end() ? 0 : known->second; i < command.steps.size(); ++i)
             Add(WeightOf(command.steps[i].progress), command.node,
                 WithReason("command " + std::to_string(command.number) + " (" + WireName(command.kind) +
-                               ") " + WireName(command.steps[i].progress),
+                               ") " + WordOf(command.kind, command.steps[i].progress),
                            command.steps[i].reason));
     }
     _commands = std::move(now);  // the list is bounded, and so is this
 }
 
+// The problems that begin together at one node are one event: a node that comes may have dozens.
 void EventLog::LookAtProblems(const StationData &now)
 {
-    std::set<std::string> problems;
+    std::map<std::string, KnownProblem> problems;
+    std::map<std::string, std::pair<std::string, std::size_t>> news;  // by node: the first text, and how many
     for (const Rabit::Gateway::Problem &problem : now.Problems)
     {
         if (problems.size() >= MaxFollowed)
             break;
         const std::string text = WithReason(problem.subject, problem.reason);
-        if (problems.insert(problem.node + ' ' + text).second &&
-            !_problems.contains(problem.node + ' ' + text))
-            Add(Weight::Warning, problem.node, text);
+        const auto [place, isFirst] =
+            problems.try_emplace(problem.node + ' ' + text, KnownProblem{_nowS, false});
+        if (!isFirst)
+            continue;
+        KnownProblem &known = place->second;
+        if (const auto before = _problems.find(place->first); before != _problems.end())
+            known = before->second;
+        if (known.Told || _nowS - known.SinceS < ProblemLastsS)
+            continue;
+        known.Told = true;
+        auto &[first, count] = news[problem.node];
+        first = count == 0 ? text : first;
+        ++count;
     }
+    for (const auto &[node, found] : news)
+        Add(Weight::Warning, node,
+            found.second == 1 ? found.first
+                              : found.first + "; and " + std::to_string(found.second - 1) + " more problems");
     _problems = std::move(problems);
 }
 

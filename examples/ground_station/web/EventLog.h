@@ -7,7 +7,6 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -38,6 +37,9 @@ public:
     static constexpr std::size_t MaxEvents = 200;
     // Maximum number of commands, of targets and of problems that are followed; others are ignored.
     static constexpr std::size_t MaxFollowed = 2000;
+    // A problem is an event once it has lasted for this long. By then, the texts of other nodes' problems
+    // have come.
+    static constexpr double ProblemLastsS = 5;
 
     void Look(const StationData &now);
 
@@ -52,6 +54,7 @@ private:
         std::optional<RowState> State;
         std::optional<Uav::MissionMode> Mode;
         bool WantsHome = false;
+        std::string HomeReason;
         bool WithoutOrders = false;
         std::string AreaDeclined;
     };
@@ -68,7 +71,12 @@ private:
     std::map<std::string, Known> _aircraft;
     std::map<std::string, Uav::TargetStage> _targets;  // by name
     std::map<std::uint32_t, std::size_t> _commands;    // by id: how many of its steps were told
-    std::set<std::string> _problems;
+    struct KnownProblem
+    {
+        double SinceS = 0;
+        bool Told = false;
+    };
+    std::map<std::string, KnownProblem> _problems;  // by node and text
     std::uint32_t _area = 0;
 };
 

@@ -41,7 +41,8 @@ Json ToJson(const Uav::Pose &pose)
                                              static_cast<double>(pose.velocity_east_mps)),
                                   10)},
             {"climb_mps", Rounded(-static_cast<double>(pose.velocity_down_mps), 10)},
-            {"yaw_rad", Short(static_cast<double>(pose.yaw_rad))}};
+            {"yaw_rad", Short(static_cast<double>(pose.yaw_rad))},
+            {"number", pose.number}};
 }
 
 Json ToJson(const Uav::MissionState &mission)
@@ -160,6 +161,8 @@ Json ToJson(const AircraftData &aircraft)
                    {"delivery_rate", Rounded(aircraft.DeliveryRate, 1)}};
     if (aircraft.WithoutOrders)
         object["without_orders"] = true;
+    if (aircraft.Replay)
+        object["replay"] = true;
     if (aircraft.Mission)
         AddPlaces(object, *aircraft.Mission.Content);
     Add(object, "pose", aircraft.Pose);

@@ -66,6 +66,7 @@ struct AircraftData
     Aged<Uav::CameraView> Camera;
     std::optional<PictureData> Picture;
     bool WithoutOrders = false;  // see NodeCommands
+    bool Replay = false;         // it plays a recording, or did when it was last heard
 };
 
 // The present data of the ground station.

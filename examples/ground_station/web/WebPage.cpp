@@ -130,6 +130,7 @@ void WebPage::Show(AircraftData &data, AircraftFollower &follower) const
     if (const auto *const status = StatusOf(*_fleet, data.Node))
     {
         data.Reason = status->reason;
+        data.Replay = status->replay;
         data.HeardS = status->last_heard_s + _data.FleetAgeS;
         data.RoundTripS = status->round_trip_s;
         data.DeliveryRate = status->delivery_rate > 0 ? status->delivery_rate : AircraftData::Unknown;

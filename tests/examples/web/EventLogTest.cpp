@@ -91,7 +91,7 @@ TEST_F(EventLog, TellsWhatTheAircraftDoAndFind)
     _health.wants_home = true;
     _health.reason = "battery low";
     Aircraft().Health = {&_health, 0};
-    EXPECT_THAT(New(), ElementsAre("uav1|goes home for a reason of its own: battery low"));
+    EXPECT_THAT(New(), ElementsAre("uav1|goes home by itself: battery low"));
 }
 
 TEST_F(EventLog, TellsHowCommandsGoOn)
@@ -149,12 +149,64 @@ TEST_F(EventLog, TellsOfTheSearchAreaAndOfProblemsOnce)
     problem.node = "uav3";
     problem.reason = "other type";
     _data.Problems = {problem, problem};
-    EXPECT_THAT(New(), ElementsAre("|Search area 2 is in force", "uav3|subscribe Pose: other type"));
+    EXPECT_THAT(New(), ElementsAre("|Search area 2 is in force"));
+    _data.NowS += Ground::EventLog::ProblemLastsS;
+    EXPECT_THAT(New(), ElementsAre("uav3|subscribe Pose: other type"));
     EXPECT_THAT(New(), ElementsAre());
     _data.Problems.clear();
     EXPECT_THAT(New(), ElementsAre());
     _data.Problems = {problem};
+    EXPECT_THAT(New(), ElementsAre());
+    _data.NowS += Ground::EventLog::ProblemLastsS;
     EXPECT_THAT(New(), ElementsAre("uav3|subscribe Pose: other type"));
+}
+
+TEST_F(EventLog, TellsOnceOfAProblemWhoseTextComesLaterAndOnceOfManyThatBeginTogether)
+{
+    Rabit::Gateway::Problem problem;
+    problem.subject = "uav3: 1 problem";
+    problem.node = "uav3";
+    problem.reason = "see its log";
+    _data.Problems = {problem};
+    EXPECT_THAT(New(), ElementsAre());
+    _data.NowS += 2;
+    _data.Problems[0].reason = "subscribe Pose: other type";
+    EXPECT_THAT(New(), ElementsAre());
+    _data.NowS += Ground::EventLog::ProblemLastsS;
+    EXPECT_THAT(New(), ElementsAre("uav3|uav3: 1 problem: subscribe Pose: other type"));
+    _data.Problems.clear();
+    for (const char *const message : {"Pose", "Health", "Findings"})
+    {
+        problem.subject = std::string("subscribe ") + message;
+        problem.reason = "nothing has been received";
+        _data.Problems.push_back(problem);
+    }
+    EXPECT_THAT(New(), ElementsAre());
+    _data.NowS += Ground::EventLog::ProblemLastsS;
+    EXPECT_THAT(New(), ElementsAre("uav3|subscribe Pose: nothing has been received; and 2 more problems"));
+}
+
+TEST_F(EventLog, TellsWhyAnAircraftNeedNotBeAtHomeAnyMore)
+{
+    _health.wants_home = true;
+    _health.reason = "the ground station is silent";
+    Aircraft().Health = {&_health, 0};
+    EXPECT_THAT(New(), ElementsAre("uav1|goes home by itself: the ground station is silent"));
+    _health.wants_home = false;
+    _health.reason = "";
+    EXPECT_THAT(New(),
+                ElementsAre("uav1|need not be at home any more; this is over: the ground station is silent"));
+}
+
+TEST_F(EventLog, TellsThatASearchHasBegunAndNotThatItIsDone)
+{
+    _commands.items.resize(1);
+    _commands.items[0].node = "uav1";
+    _commands.items[0].number = 1;
+    _commands.items[0].kind = Ground::OrderKind::ORDER_SEARCH;
+    AddStep(Ground::CommandProgress::PROGRESS_DONE);
+    _data.Commands = {&_commands, 0};
+    EXPECT_THAT(New(), ElementsAre("uav1|command 1 (search) begun"));
 }
 
 TEST_F(EventLog, IsBounded)

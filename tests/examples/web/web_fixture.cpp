@@ -1,5 +1,5 @@
 // The real web page over a scripted fleet, for the tests in a browser:
-//   web_fixture AIRCRAFT [hostile|secured|noarea] [PORT]
+//   web_fixture AIRCRAFT [hostile|secured|noarea|poser] [PORT]
 // Prints the page's address, then each order that it gets. Lines on the standard input change the fleet:
 // `stale NODE`, `lost NODE`, `up NODE`, `beatless NODE` (it is STALE, but its poses arrive), `progress STEP
 // [REASON]` (the last command comes to this step, a number of Ground::CommandProgress), `decline NODE REASON`
@@ -7,7 +7,8 @@
 // `radio held` (it has a budget, and two in five posts of Pose and some messages for uav2 are held back),
 // `nofix NODE` (its position is 0, 0), `noplace NODE` (its position is no number), `far NODE` (it is 60 km
 // away), `noheart NODE` (its Health stops), `radio free` (not limited), `replay NODE` (it plays a recording),
-// `silence` (nothing is posted any more). The program ends when the lines end. The ground is at 430 m, and
+// `fararea` (the search area is 3336 km away), `silence` (nothing is posted any more). With `poser` the last
+// aircraft posts nothing but poses. The program ends when the lines end. The ground is at 430 m, and
 // each aircraft has a floor of 460 m.
 #include "WebPage.h"
 #include "WebServer.h"
@@ -100,10 +101,11 @@ struct FlyingAircraft
 class ScriptedFleet : public Rabit::RabitManager
 {
 public:
-    ScriptedFleet(int aircraft, bool hostile, bool hasArea, Script &script)
+    ScriptedFleet(int aircraft, bool hostile, bool hasArea, bool hasPoser, Script &script)
         : RabitManager("Commands"),
           _hostile(hostile),
           _hasArea(hasArea),
+          _hasPoser(hasPoser),
           _script(script),
           _aircraft(static_cast<std::size_t>(aircraft))
     {
@@ -165,6 +167,8 @@ private:
             words >> what >> node;
             if (what == "silence")
                 _silent = true;
+            if (what == "fararea")
+                PutAreaFarAway();
             if (what == "radio")
                 _held = node == "held";
             if (what == "replay")
@@ -230,6 +234,12 @@ private:
         _fence->longitude_deg = _area->longitude_deg;
         _fence->radius_m = radiusM;
         _fence->PostMessage();
+    }
+    void PutAreaFarAway()
+    {
+        _area->latitude_deg = 17.3977;
+        ++_area->number;
+        _area->PostMessage();
     }
     void SetProblems(std::size_t count)
     {
@@ -340,6 +350,8 @@ private:
         one.Pose->gps_time_s = 1000 + _step * 0.1;
         one.Pose->number = static_cast<std::uint32_t>(_step);
         one.Pose->PostMessage();
+        if (_hasPoser && &one == &_aircraft.back())
+            return;
         PostVision(one, index);
         if (_step % 10 != 1)
             return;
@@ -402,6 +414,7 @@ private:
 
     const bool _hostile;
     const bool _hasArea;
+    const bool _hasPoser;
     Script &_script;
     std::vector<FlyingAircraft> _aircraft;
     bool _silent = false;
@@ -427,8 +440,8 @@ void Serve(int aircraft, const std::string &kind, const std::string &port)
 
     Script script;
     Rabit::RabitReactor reactor;
-    reactor.AddManager(
-        std::make_unique<ScriptedFleet>(aircraft, kind == "hostile", kind != "noarea", script));
+    reactor.AddManager(std::make_unique<ScriptedFleet>(aircraft, kind == "hostile", kind != "noarea",
+                                                       kind == "poser", script));
     reactor.AddManager(std::make_unique<Ground::WebPage>(Ground::WebPage::Settings{}, std::move(server)));
     std::thread reader(
         [&]

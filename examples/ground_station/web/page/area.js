@@ -1,6 +1,7 @@
 // The search area: a draft that is moved and resized by mouse, keys or numbers, and then sent.
 /* global L */
 import {byId, setText} from './dom.js';
+import {askedOfDistance} from './far.js';
 import {outsideOf} from './fence.js';
 import {corners, moved, offset} from './geo.js';
 import {fixed, isNumber} from './format.js';
@@ -83,15 +84,20 @@ export class SearchAreaEditor {
       altitude: this.area?.altitude_m,
       ...(!this.draft ? {} : inForce ? {present: inForce.altitude_m, than: 'the area in force'}
         : {present: poses.length > 0 ? Math.min(...poses) : undefined, than: 'the lowest aircraft'}),
-      ground: knownGround(model.aircraft),
+      ground: knownGround(model.aircraft, this.area ? corners(this.area) : []),
       floors: model.aircraft.map((one) => [one.node, one.floor_m]),
     });
   }
 
   // What is asked about again before it is sent; empty if nothing is.
   get question() {
-    const outside = this.draft ? outsideOf(this.model.snapshot?.fence, corners(this.draft)) : '';
-    return [this.height.asks, outside && `The area is ${outside}: aircraft will decline it.`].filter((one) => one).join(' ');
+    if (!this.draft) return '';
+    const {model} = this;
+    const points = corners(this.draft);
+    const outside = outsideOf(model.snapshot?.fence, points);
+    const flying = model.aircraft.filter((one) => model.state(one) !== 'lost').map(({node}) => node);
+    const far = askedOfDistance(model, flying, points, 'The area');
+    return [this.height.asks, far, outside && `The area is ${outside}: aircraft will decline it.`].filter((one) => one).join(' ');
   }
 
   change(values) {

@@ -8,14 +8,15 @@ import {project} from './canvas.js';
 const CELL_PX = 90;             // a cell of the grid is at least this wide
 const SHOWN_AFTER_LOSS_S = 60;  // a camera's view that is older is not drawn any more
 const SIGMAS = 2;               // of the ellipse
+const TEXT_PX = 14;             // the height of a text on the canvas
 
 function niceAtLeast(value) {
   const power = 10 ** Math.floor(Math.log10(value));
   return [1, 2, 5, 10].map((step) => step * power).find((step) => step >= value);
 }
 
-// Squares whose sides are a round number of metres, labelled in degrees. Returns that number.
-export function drawGrid(painter) {
+// Squares whose sides are a round number of metres, labelled in degrees where no other text is. Returns that number.
+export function drawGrid(painter, space) {
   const {map, size, context, colours} = painter;
   const middle = map.getCenter();
   const latitude = Math.round(middle.lat);  // so that the lines stay in place while the map is moved
@@ -38,17 +39,18 @@ export function drawGrid(painter) {
     const y = Math.round(painter.at({lat, lng: middle.lng})[1]) + 0.5;
     context.moveTo(0, y);
     context.lineTo(size.x, y);
-    labels.push([`${lat.toFixed(digits)}°`, 4, y - 3]);
+    labels.push([`${lat.toFixed(digits)}°`, 4, y - 2 - TEXT_PX]);
   });
   eachLine(bounds.getWest(), bounds.getEast(), cell / metresPerDegreeOfLongitude(latitude), (lng) => {
     const x = Math.round(painter.at({lat: middle.lat, lng})[0]) + 0.5;
     context.moveTo(x, 0);
     context.lineTo(x, size.y);
-    labels.push([`${lng.toFixed(digits)}°`, x + 3, 12]);
+    labels.push([`${lng.toFixed(digits)}°`, x + 3, 1]);
   });
   context.stroke();
   context.globalAlpha = 0.9;
-  for (const [text, x, y] of labels) if (x > 60 || y > 40) context.fillText(text, x, y);
+  for (const [text, x, y] of labels)
+    if (space.place([[x, y]], painter.textWidth(text), TEXT_PX) === 0) context.fillText(text, x, y + TEXT_PX - 3);
   context.globalAlpha = 1;
   return cell;
 }
@@ -60,11 +62,16 @@ export function drawArea(painter, area, isDraft, space) {
   painter.path(places, true);
   painter.fill(colour, isDraft ? 0.08 : 0.05);
   painter.stroke(colour, 2, isDraft ? [6, 4] : []);
-  const [x, y] = places[1];
   const name = isDraft ? 'New search area, not sent' : `Search area ${area.number}`;
   const text = `${name}  ${Math.round(area.north_m)} × ${Math.round(area.east_m)} m`;
-  space.block(x + 2, y - 7 - TEXT_PX, painter.textWidth(text), TEXT_PX);
-  painter.label(text, x + 2, y - 7, colour);
+  // Above its upper edge, else inside, else below: two areas may have one corner.
+  const width = painter.textWidth(text);
+  const [[left, bottom], [, top]] = places;
+  const rows = [top - 7 - TEXT_PX, top + 5, bottom + 5, bottom - 7 - TEXT_PX].map((y) => [left + 2, y]);
+  const at = space.place(rows, width, TEXT_PX);
+  if (at < 0) space.block(...rows[0], width, TEXT_PX);
+  const [x, y] = rows[Math.max(0, at)];
+  painter.label(text, x, y + TEXT_PX - 3, colour);
 }
 
 export function drawFence(painter, fence) {
@@ -84,7 +91,9 @@ export function drawTrails(painter, trails, model) {
     if (trail.length < 2) continue;
     const aircraft = model.find(node);
     const fresh = aircraft && model.isPoseFresh(aircraft);
-    painter.path(trail.map((point) => painter.place(point)), false);
+    const {context} = painter;
+    context.beginPath();
+    trail.forEach((point, i) => (i === 0 || point.isStart ? context.moveTo(...painter.place(point)) : context.lineTo(...painter.place(point))));
     painter.stroke(fresh ? painter.colours.trail : painter.colours.old, node === model.selected ? 2.5 : 1.5, fresh ? [] : [2, 4]);
   }
 }
@@ -102,8 +111,6 @@ export function drawFootprints(painter, model) {
     painter.stroke(colour, 1, fresh ? [] : [3, 4]);
   }
 }
-
-const TEXT_PX = 14;  // the height of a text on the canvas
 
 // A text beside a point, where it covers no other one; none where there is no place for it.
 function labelBeside(painter, space, text, [x, y], gap, colour) {
@@ -168,7 +175,7 @@ export function drawTargets(painter, targets, space) {
   }
 }
 
-// Keeps where each aircraft has been.
+// Keeps where each aircraft has been. An incarnation's way begins anew: its poses are counted from 1.
 export class Trails {
   static LONGEST = 600;
   static STEP_S = 0.5;
@@ -183,8 +190,10 @@ export class Trails {
     const point = project(map, {lat: pose.latitude_deg, lng: pose.longitude_deg});
     if (last && last.x === point.x && last.y === point.y) return;
     point.at = now;
+    point.number = pose.number;
+    point.isStart = last !== undefined && pose.number < last.number;
     // The last point moves with the aircraft until it is STEP_S away from the one before.
-    if (trail.length > 1 && now - trail[trail.length - 2].at < Trails.STEP_S) trail[trail.length - 1] = point;
+    if (trail.length > 1 && !point.isStart && !last.isStart && now - trail[trail.length - 2].at < Trails.STEP_S) trail[trail.length - 1] = point;
     else trail.push(point);
     if (trail.length > Trails.LONGEST) trail.shift();
   }

@@ -74,7 +74,8 @@ export class FleetTable {
     // Where one thing is there and another is not, state and age would seem to contradict each other.
     const missing = model.missing(aircraft);
     setAttribute(cells[1], 'title', missing);
-    setText(why, /arriving/.test(missing) ? missing : aircraft.without_orders ? 'back without orders' : '');
+    const special = /arriving/.test(missing) ? missing : aircraft.without_orders ? 'back without orders' : '';
+    setText(why, [aircraft.replay ? 'replay' : '', special].filter((one) => one).join(' · '));
     setText(cells[2], pose ? `${fresh ? '' : '! '}${ageText(model.age(pose.age_s))}` : '–');
     mark(cells[2], 'age number', fresh);
     setText(cells[3], isNumber(aircraft.round_trip_s) ? fixed(aircraft.round_trip_s * 1000, 1) : '–');
@@ -123,7 +124,7 @@ export function showSelected(model) {
   const {marked} = model;
   for (const name of ['goto', 'centre']) byId(`act-${name}`).disabled = !known;
   for (const name of ['search', 'home']) byId(`act-${name}`).disabled = !known && marked.length === 0;
-  byId('act-all-home').disabled = model.allAircraft.length === 0;
+  byId('act-all-home').disabled = model.thoseWithAMission.length === 0;
   setText(byId('marked-text'), marked.length > 0 ? `✓ Search and Home are for those that are marked: ${marked.join(', ')}.` : '');
   if (!known) {
     setText(byId('selected-title'), 'No aircraft selected');

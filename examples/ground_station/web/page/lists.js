@@ -3,6 +3,8 @@ import {ageText, ageWithUnit, clockTime, fixed, isNumber, STAGES, STATES} from '
 import {byId, element, keepList, setAttribute, setClass, setText} from './dom.js';
 
 const STEPS = ['sent', 'delivered', 'accepted', 'done'];
+// A search goes on until another command comes.
+const wordOf = (kind, step) => (kind === 'search' && step === 'done' ? 'begun' : step);
 
 export class CommandList {
   constructor(model) {
@@ -35,7 +37,7 @@ export class CommandList {
       // The way that it has come, and the way that it has to go.
       item.what.replaceChildren(...STEPS.flatMap((step, i) => {
         const way = i === at ? 'step reached now' : i < at ? 'step reached' : 'step';
-        const made = element('span', way, step);
+        const made = element('span', way, wordOf(command.kind, step));
         if (i === at) made.setAttribute('aria-current', 'step');
         return i > 0 ? [element('span', i <= at ? 'step reached' : 'step', ' → '), made] : [made];
       }));
@@ -81,7 +83,10 @@ export class ProblemList {
     this.items = new Map();
   }
   update() {
-    const {count = 0, items = []} = this.model.snapshot?.problems ?? {};
+    const {count: all = 0, items: first = []} = this.model.snapshot?.problems ?? {};
+    // Those of a node that was dismissed are dismissed with it.
+    const items = first.filter(({node}) => !this.model.forgotten.has(node));
+    const count = all - (first.length - items.length);
     const fresh = this.model.fleetFresh;
     const panel = byId('problems-panel');
     panel.hidden = count === 0;

@@ -89,7 +89,7 @@ function showReplay() {
 const counts = new Map();
 function showCounts() {
   const byState = {up: 0, stale: 0, lost: 0, waiting: 0};
-  for (const aircraft of model.aircraft) byState[model.state(aircraft)] += 1;
+  for (const aircraft of model.aircraft) if (!model.isOverReplay(aircraft)) byState[model.state(aircraft)] += 1;
   keepList(byId('counts'), counts, Object.keys(byState).filter((state) => state !== 'waiting' || byState.waiting > 0),
     (state) => state, (state) => ({root: element('span', `state ${state}`)}),
     ({root}, state) => {
@@ -159,7 +159,7 @@ const step = (by) => {
   table.focus(next);
 };
 const help = () => byId('keys').showModal();
-const allHome = () => orders.open('home', null, model.allAircraft.map(({node}) => node));
+const allHome = () => orders.open('home', null, model.thoseWithAMission.map(({node}) => node));
 const centre = () => map.centre(model.selectedAircraft);
 
 listenForKeys([

@@ -6,13 +6,14 @@ import {destinationsOf, wayLeft} from './destinations.js';
 import {blockTargets, drawArea, drawDestinations, drawFence, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
 import {byId, element, setAttribute, setText} from './dom.js';
 import {LabelSpace, placesAround} from './labels.js';
-import {corners, distance} from './geo.js';
-import {placeOf} from './model.js';
+import {corners, distance, moved} from './geo.js';
+import {fixOf, placeOf} from './model.js';
 import {pageNow} from './connection.js';
 
 const SYMBOL_PX = 22;  // what the name of an aircraft keeps away from
-const NO_FIX_DEG = 0.001;
-const OUTLIER_M = 50000;  // farther than any aircraft flies from the others
+const OUTLIER_M = 50000;  // farther than any aircraft flies from its search area
+const FENCE_SIZES = 4;  // a fence that is more of these wide than all else is left out
+const MOST_NAMED = 4;
 const SVG = 'http://www.w3.org/2000/svg';
 
 function svg(tag, attributes) {
@@ -32,21 +33,23 @@ function makeSymbol() {
   return {root, turned, label};
 }
 
-// What the map is fitted to: the search area and the aircraft that are not LOST, without those that cannot be where they
-// say: at 0, 0, which a receiver without a fix tells, or far from the area, or without one from most of the others. If
-// nothing remains, all places that are known.
-function placesToFit(model, area) {
-  const hasFix = ({lat, lng}) => Math.abs(lat) > NO_FIX_DEG || Math.abs(lng) > NO_FIX_DEG;
-  const placesOf = (aircraft) => aircraft.map(placeOf).filter((place) => place);
-  const known = placesOf(model.aircraft);
-  const places = placesOf(model.aircraft.filter((one) => model.state(one) !== 'lost')).filter(hasFix);
-  const isNear = (a, b) => distance(a, b) <= OUTLIER_M;
-  if (area) {
-    const middle = {lat: area.latitude_deg, lng: area.longitude_deg};
-    return [...places.filter((place) => isNear(middle, place)), ...corners(area)];
-  }
-  const near = places.filter((place) => 2 * places.filter((other) => isNear(place, other)).length >= places.length);
-  return [near, places, known.filter(hasFix), known].find(({length}) => length > 0) ?? [];
+const middleOf = ({latitude_deg: lat, longitude_deg: lng}) => ({lat, lng});
+const isPresent = (model) => (one) => model.state(one) !== 'lost';
+
+// What the map is fitted to: all aircraft that are not LOST and have a fix; the search area, unless it is far from all of
+// them; and the geofence, if it is not much larger than these. If nothing remains, all places that are known.
+function placesToFit(model, {area, fence}) {
+  const all = (places) => places.filter((place) => place);
+  const present = all(model.aircraft.filter(isPresent(model)).map(fixOf));
+  const hasArea = area && (present.length === 0 || present.some((place) => distance(middleOf(area), place) <= OUTLIER_M));
+  const places = [...present, ...(hasArea ? corners(area) : [])];
+  const known = [places, all(model.aircraft.map(fixOf)), all(model.aircraft.map(placeOf))].find(({length}) => length > 0) ?? [];
+  if (!fence || known.length === 0) return known;
+  const around = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(([north, east]) =>
+    moved(middleOf(fence), north * fence.radius_m, east * fence.radius_m));
+  const size = Math.max(...known.map((place) => distance(place, known[0])));
+  const isNear = Math.max(...known.map((place) => distance(place, middleOf(fence)))) <= OUTLIER_M;
+  return isNear && 2 * fence.radius_m <= FENCE_SIZES * size ? [...known, ...around] : known;
 }
 
 export class FleetMap {
@@ -77,9 +80,10 @@ export class FleetMap {
   }
 
   draw(painter) {
-    const cell = drawGrid(painter);
-    const [area, isDraft] = this.areaToDraw();
     const space = new LabelSpace(painter.size);
+    this.blockControls(space);
+    const cell = drawGrid(painter, space);
+    const [area, isDraft] = this.areaToDraw();
     drawFence(painter, this.model.snapshot?.fence);
     drawArea(painter, this.model.snapshot?.area, false, space);
     if (isDraft) drawArea(painter, area, true, space);
@@ -95,8 +99,40 @@ export class FleetMap {
     const text = this.destinations.map(({node, kind, left}) => `${node} ${kind} ${wayLeft(left)}`).join(', ');
     setAttribute(byId('map'), 'data-destinations', text);
     const size = cell >= 1000 ? `${cell / 1000} km` : `${cell} m`;
-    const fence = this.model.snapshot?.fence ? ' · dotted circle: geofence' : '';
-    setText(byId('legend'), `Grid ${size} · ellipses 2σ · north up${fence}`);
+    setText(byId('legend'), `Grid ${size} · ellipses 2σ · north up${this.fenceLegend}`);
+    setText(byId('off-map'), this.offMap);
+  }
+
+  // No text is put under the buttons, the scale and the legend.
+  blockControls(space) {
+    const frame = byId('map').getBoundingClientRect();
+    for (const one of document.querySelectorAll('.leaflet-control, .legend span')) {
+      const {left, top, width, height} = one.getBoundingClientRect();
+      space.block(left - frame.left, top - frame.top, width, height);
+    }
+  }
+
+  get fenceLegend() {
+    const {fence} = this.model.snapshot ?? {};
+    if (!fence) return '';
+    const bounds = this.map.getBounds();
+    const isInside = (corner) => distance(middleOf(fence), corner) < fence.radius_m;
+    const allInside = [bounds.getNorthWest(), bounds.getNorthEast(), bounds.getSouthWest(), bounds.getSouthEast()].every(isInside);
+    return allInside ? ' · inside of the geofence' : ' · dotted circle: geofence';
+  }
+
+  // Aircraft and areas that are not on the part of the map that is shown; empty if all are.
+  get offMap() {
+    const {model} = this;
+    const bounds = this.map.getBounds();
+    const away = model.aircraft.filter(isPresent(model)).filter((one) => fixOf(one) && !bounds.contains(fixOf(one))).map(({node}) => node);
+    const names = away.length > MOST_NAMED ? [`${away.length} aircraft`] : away;
+    const {area} = model.snapshot ?? {};
+    if (area && !bounds.intersects(corners(area))) {
+      const metres = Math.min(...model.aircraft.map(fixOf).filter((one) => one).map((place) => distance(place, middleOf(area))));
+      names.push(`search area ${area.number}${Number.isFinite(metres) && metres > OUTLIER_M ? ` (${wayLeft(metres)} away)` : ''}`);
+    }
+    return names.length > 0 ? `▲ Off the map: ${names.join(', ')}` : '';
   }
 
   get destinations() {
@@ -191,8 +227,7 @@ export class FleetMap {
   }
 
   fit() {
-    const {area} = this.model.snapshot ?? {};
-    const points = placesToFit(this.model, area).map(({lat, lng}) => [lat, lng]);
+    const points = placesToFit(this.model, this.model.snapshot ?? {}).map(({lat, lng}) => [lat, lng]);
     if (points.length === 0) return;
     this.fitted = true;
     this.moved = false;

@@ -28,6 +28,14 @@ export function placeOf(aircraft) {
   return isNumber(lat) && isNumber(lng) ? {lat, lng} : null;
 }
 
+const NO_FIX_DEG = 0.001;
+
+// Where it is, if its receiver has a fix: without one it tells 0, 0.
+export function fixOf(aircraft) {
+  const place = placeOf(aircraft);
+  return place && (Math.abs(place.lat) > NO_FIX_DEG || Math.abs(place.lng) > NO_FIX_DEG) ? place : null;
+}
+
 export class Model {
   snapshot = null;
   takenAt = -Infinity;
@@ -52,6 +60,14 @@ export class Model {
   get allAircraft() {
     return this.snapshot?.aircraft ?? [];
   }
+  // Those that can take an order: nodes that only post poses, and replays, have no mission.
+  get thoseWithAMission() {
+    return this.allAircraft.filter(({mission, replay}) => mission && !replay);
+  }
+  // A replay that is over is no aircraft that is missing.
+  isOverReplay(aircraft) {
+    return aircraft.replay === true && this.state(aircraft) === 'lost';
+  }
   get aircraft() {
     return this.allAircraft.filter(({node}) => !this.forgotten.has(node));
   }
@@ -60,9 +76,10 @@ export class Model {
     this.markedNodes.delete(node);
     if (this.selected === node) this.selected = null;
   }
-  // What needs attention first: LOST, STALE, a low battery, WAITING, UP; within each by name.
+  // What needs attention first: LOST, STALE, a low battery, WAITING, UP, replays that are over; within each by name.
   get byUrgency() {
     const urgency = (one) => {
+      if (this.isOverReplay(one)) return URGENCY.length;
       const state = this.state(one);
       return URGENCY.indexOf((this.isFresh(one, 'health') && batteryLevel(one.health.battery_percent)) || state);
     };

@@ -1,16 +1,13 @@
 // Sends a command to one aircraft, or to several at once, after a person has confirmed it.
 import {byId, setText} from './dom.js';
-import {distance} from './geo.js';
+import {corners, distance} from './geo.js';
 import {fixed, isNumber, STATES} from './format.js';
-import {wayLeft} from './destinations.js';
+import {askedOfDistance} from './far.js';
 import {outsideOf} from './fence.js';
 import {describeHeight, knownGround} from './heights.js';
 import {placeOf} from './model.js';
 
 const DEFAULT_SPEED_MPS = 12;
-// A point that is farther from the aircraft is asked about again: this, or so many sides of the search area.
-const FAR_M = 5000;
-const FAR_SIDES = 10;
 const MOST_NAMED = 4;  // in a title
 const CLEAR_PX = 34;  // around what the form must not cover
 const FIELDS = [
@@ -92,11 +89,13 @@ export class Orders {
     this.update();
     this.showPoint();
     if (kind === 'goto' && !point) {
-      byId('order-latitude').focus();
+      byId('order-latitude').focus({preventScroll: true});
       byId('order-latitude').select();
     } else {
-      byId('order-send').focus();
+      byId('order-send').focus({preventScroll: true});
     }
+    // On a small screen the form stands beside the map or below it: no more is scrolled than it takes to see it.
+    this.form.scrollIntoView({block: 'nearest'});
   }
 
   close(hadFocus = this.form.contains(document.activeElement)) {
@@ -125,7 +124,7 @@ export class Orders {
     const fresh = this.model.isPoseFresh(aircraft);
     return describeHeight({
       altitude: Number(typed), present: aircraft.pose?.altitude_m, than: fresh ? 'it is now' : 'it is said to have been',
-      ground: knownGround([aircraft]), floors: [[this.node, aircraft.floor_m]],
+      ground: knownGround([aircraft], this.point ? [this.point] : []), floors: [[this.node, aircraft.floor_m]],
     });
   }
 
@@ -138,13 +137,9 @@ export class Orders {
     return outside && `The point is ${outside}: ${this.node} will decline it.`;
   }
   get distanceAsked() {
-    if (this.kind !== 'goto' || !this.point) return '';
-    const from = placeOf(this.model.find(this.node));
-    if (!from) return `The position of ${this.node} is not known.`;
     const {area} = this.model.snapshot ?? {};
-    const far = Math.max(FAR_M, FAR_SIDES * Math.max(area?.north_m ?? 0, area?.east_m ?? 0));
-    const metres = distance(from, this.point);
-    return metres > far ? `The point is ${wayLeft(metres)} away from ${this.node}.` : '';
+    if (this.kind === 'search' && area) return askedOfDistance(this.model, this.nodes, corners(area), 'The search area');
+    return this.kind === 'goto' && this.point ? askedOfDistance(this.model, [this.node], [this.point], 'The point') : '';
   }
 
   get who() {
@@ -188,6 +183,8 @@ export class Orders {
     if (this.kind === 'goto') said.push(this.height.says);
     const state = this.stateOf(this.node);
     said.unshift(...this.doubtful);
+    const dismissed = this.nodes.filter((node) => this.model.forgotten.has(node));
+    if (dismissed.length > 0) said.push(`Also for what was dismissed from the list: ${dismissed.join(', ')}.`);
     const from = placeOf(aircraft);
     if (this.kind === 'goto' && this.point && from) {
       said.push(`${Math.round(distance(from, this.point))} m from where it is${state === 'up' ? '' : ' said to have been'}.`);

@@ -152,7 +152,7 @@ async function cutsNothingOnAPhone(programs) {
     return found;
   });
   assert.deepEqual(await cut(), []);
-  const tops = await page.evaluate(() => ['.map-pane', '.panel.fleet', '.panel.selected', '.pictures'].map((one) => document.querySelector(one).getBoundingClientRect().top));
+  const tops = await page.evaluate(() => ['.map-pane', '.panel.fleet', '#selected-text', '.pictures'].map((one) => document.querySelector(one).getBoundingClientRect().top));
   assert.deepEqual(tops, [...tops].sort((a, b) => a - b), 'map, fleet, what to do with it, and then the pictures');
   await fixture.end();
   await becomes(() => page.isVisible('#banner'), 'the banner is shown');
@@ -251,10 +251,47 @@ async function cutsNothingOnAPhoneHeldSideways(programs) {
     return ![[left + 2, top + 2], [right - 2, bottom - 2]].every(([x, y]) => one.contains(document.elementFromPoint(x, y)));
   }).map((one) => one.id));
   assert.deepEqual(cut, [], 'all of the form can be reached');
+  await page.tap('#order-cancel');
+
+  // A tap on the map opens the form beside it.
+  await page.evaluate(() => window.scrollTo(0, 0));
+  await page.locator('.map-pane').scrollIntoViewIfNeeded();
+  const map = await page.locator('#map').boundingBox();
+  await page.touchscreen.tap(map.x + map.width / 2, map.y + 20);
+  await becomes(() => page.isVisible('#order'), 'the form is open');
+  const [form, title, after] = await Promise.all(['#order', '#order-title', '#map'].map((one) => page.locator(one).boundingBox()));
+  assert.ok(form.x >= after.x + after.width, `beside the map: ${JSON.stringify({form, after})}`);
+  assert.ok(title.y >= 0 && title.y + title.height <= 390, `its title is in sight: ${JSON.stringify(title)}`);
+  const seen = Math.min(390, after.y + after.height) - Math.max(0, after.y);
+  assert.ok(seen >= 0.8 * after.height, `the map is in sight: ${seen} of ${after.height}`);
   assert.deepEqual(fleet.errors, []);
 }
 
+// Of an aircraft that was tapped, what can be done with it is in sight, without scrolling.
+async function keepsWhatCanBeOrderedInSightOnAPhone(programs) {
+  const {url} = await startFixture(programs, 1);
+  for (const viewport of [PHONE.viewport, {width: 844, height: 390}]) {
+    await openBrowser({...PHONE, viewport});
+    const fleet = await FleetPage.open(url);
+    const {page} = fleet;
+    await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state), 'is UP');
+    await page.evaluate(() => window.scrollTo(0, 0));
+    const marker = await fleet.marker('uav1');
+    await page.touchscreen.tap(marker.x, marker.y);
+    await becomes(async () => /^uav1/.test(await fleet.text('#selected-title')), 'it is selected');
+    for (const one of ['#selected-title', '#act-goto', '#act-home']) {
+      const box = await page.locator(one).boundingBox();
+      assert.ok(box.y >= 0 && box.y + box.height <= viewport.height, `${one} is in sight at ${viewport.width}: ${JSON.stringify(box)}`);
+    }
+    await page.tap('#act-goto');
+    await becomes(() => page.isVisible('#order'), 'it can be tapped');
+    assert.deepEqual(fleet.errors, []);
+    await page.context().close();
+  }
+}
+
 export const cases = {
+  keeps_what_can_be_ordered_in_sight_on_a_phone: keepsWhatCanBeOrderedInSightOnAPhone,
   cuts_nothing_on_a_phone_held_sideways: cutsNothingOnAPhoneHeldSideways,
   can_be_read_in_every_theme: canBeReadInEveryTheme,
   can_be_hit_with_fingers: canBeHitWithFingers,

@@ -492,7 +492,103 @@ async function asksAgainOutsideOfTheGeofence(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+// A search area that is 3336 km away, by one wrong digit.
+async function asksAgainBeforeAFarSearchArea(programs) {
+  const {fixture, url} = await startFixture(programs, 3);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && /SEARCH/.test(row.mission), 'is UP and has said how high the ground is');
+  await fleet.rowBecomes('uav3', (row) => /SEARCH/.test(row.mission), 'has said so, too');
+  await page.keyboard.press('a');
+  assert.match(await fleet.text('#area-note'), /80 m above the ground, which is at 430 m/);
+  await page.fill('#area-latitude_deg', '17.3977');
+  assert.match(await fleet.text('#area-note'), /510 m above sea level: as high as the area in force, the height of the ground is not known there\./);
+  await page.click('#area-send');
+  assert.match(await fleet.text('#area-again'), /The area is 3336 km away from uav1, uav2, uav3\. Is it meant so\?/);
+  assert.doesNotMatch(fixture.output, /area/, 'nothing is sent before it is confirmed');
+  await page.keyboard.press('Enter');
+  assert.doesNotMatch(fixture.output, /area/, 'Enter alone does not confirm it');
+  await page.keyboard.press('a');
+  await page.fill('#area-latitude_deg', '47.41');
+  await page.click('#area-send');
+  await fixture.says(/area 47\.41 /, 'a near one is not asked about');
+
+  // The order to search leads there as well.
+  fixture.tell('fararea');
+  await becomes(async () => /3: 400/.test(await fleet.text('#area-summary')), async () => `the far area is in force: ${await fleet.text('#area-summary')}`);
+  await fleet.select('uav2');
+  await page.keyboard.press('s');
+  await page.keyboard.press('Enter');
+  assert.match(await fleet.text('#order-again'), /The search area is 3336 km away from uav2\. Is it meant so\?/);
+  assert.doesNotMatch(fixture.output, /order/);
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function keepsTheAircraftOnTheMapIfTheAreaIsFar(programs) {
+  const {fixture, url} = await startFixture(programs, 3);
+  fixture.tell('fararea');
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  const shown = () => onTheMap(fleet, ['uav1', 'uav2', 'uav3']);
+  await becomes(async () => (await shown()) === 'uav1,uav2,uav3', async () => `all that are UP are on the map: ${await shown()}`);
+  await becomes(async () => /▲ Off the map: search area 2 \(3336 km away\)/.test(await fleet.text('#off-map')), async () => `the page says what is not: ${await fleet.text('#off-map')}`);
+  fixture.tell('far uav2');
+  await page.click('#fit');
+  await becomes(async () => {
+    await page.keyboard.press('f');
+    return (await shown()) === 'uav1,uav2,uav3';
+  }, async () => `one that is 60 km away is on it as well: ${await shown()}`);
+  await fleet.select('uav1');
+  await page.keyboard.press('c');
+  await page.focus('#map');
+  for (let i = 0; i < 12; i++) await page.keyboard.press('+');
+  await becomes(async () => /Off the map: .*uav2/.test(await fleet.text('#off-map')), async () => `it says which aircraft are off: ${await fleet.text('#off-map')}`);
+  assert.deepEqual(fleet.errors, []);
+}
+
+// A tool posted a pose once, and left.
+async function callsHomeThoseThatHaveAMission(programs) {
+  const {fixture, url} = await startFixture(programs, 3, 'poser');
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  for (const node of ['uav1', 'uav2']) await fleet.rowBecomes(node, (row) => /SEARCH/.test(row.mission), 'has a mission');
+  await fleet.rowBecomes('uav3', (row) => /UP/.test(row.state), 'is there');
+  fixture.tell('lost uav2');
+  await fleet.rowBecomes('uav2', (row) => /LOST/.test(row.state), 'is LOST');
+  fixture.tell('problems 3');
+  await becomes(async () => (await page.locator('#problems li').count()) === 3, 'each has a problem');
+  await page.click('button.forget');
+  await becomes(async () => (await page.locator('#problems li').count()) === 2 && /2 problems/.test(await fleet.text('#problems-title')), 'its problem is dismissed with it');
+  await page.keyboard.press('H');
+  assert.equal(await fleet.text('#order-title'), 'Call uav1, uav2 home?');
+  assert.match(await fleet.text('#order-note'), /Also for what was dismissed from the list: uav2\./);
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function putsAReplayThatIsOverLast(programs) {
+  const {fixture, url} = await startFixture(programs, 2);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  fixture.tell('replay uav1');
+  await fleet.rowBecomes('uav1', (row) => /replay/.test(row.mission), 'is marked as a replay');
+  fixture.tell('lost uav1');
+  await fleet.rowBecomes('uav1', (row) => /LOST/.test(row.state) && /replay/.test(row.mission), 'is still marked when it is over');
+  assert.deepEqual(await page.locator('#fleet tbody td.name').allTextContents(), ['uav2', 'uav1']);
+  assert.match(await fleet.text('#counts'), /1 UP.*0 LOST/, 'no aircraft is missing');
+  await page.keyboard.press('H');
+  assert.equal(await fleet.text('#order-title'), 'Call uav2 home?');
+  assert.deepEqual(fleet.errors, []);
+}
+
 export const cases = {
+  asks_again_before_a_far_search_area: asksAgainBeforeAFarSearchArea,
+  keeps_the_aircraft_on_the_map_if_the_area_is_far: keepsTheAircraftOnTheMapIfTheAreaIsFar,
+  calls_home_those_that_have_a_mission: callsHomeThoseThatHaveAMission,
+  puts_a_replay_that_is_over_last: putsAReplayThatIsOverLast,
   asks_again_before_a_far_point: asksAgainBeforeAFarPoint,
   keeps_what_was_typed_for_this_order_alone: keepsWhatWasTypedForThisOrderAlone,
   shows_and_keeps_the_focus: showsAndKeepsTheFocus,
