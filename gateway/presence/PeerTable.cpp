@@ -153,6 +153,9 @@ void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
     peer.LastEchoed.reset();
     peer.DoubtsThisNode = false;
     peer.States.clear();
+    // Of two nodes with this name, the one with the higher incarnation is the peer: the earlier one is the
+    // twin now.
+    peer.TwinPlace = peer.Twice ? std::exchange(peer.Place, {}) : "";
     peer.Place.clear();
     peer.Problems = {};
 }

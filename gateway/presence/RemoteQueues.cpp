@@ -58,4 +58,20 @@ std::vector<std::string> RemoteQueues::LiveNodesAccepting(const std::string &que
     return nodes;
 }
 
+RemoteQueues::Answer RemoteQueues::WhyNoneAccepts(const std::string &queue, const std::string &type,
+                                                  std::uint64_t definition) const
+{
+    const std::lock_guard lock(_mutex);
+    for (const auto &[name, peer] : _peers)
+    {
+        const QueueAcceptance acceptance = AcceptanceOf(peer, queue, type, definition, _ownNode);
+        if (peer.State != Gateway::NodeState::LOST && acceptance != QueueAcceptance::UnknownQueue &&
+            acceptance != QueueAcceptance::NotAnnounced && acceptance != QueueAcceptance::Accepted)
+        {
+            return {acceptance, WhyNotAccepted(acceptance, peer, queue, type)};
+        }
+    }
+    return {QueueAcceptance::UnknownNode, ""};
+}
+
 }  // namespace Rabit

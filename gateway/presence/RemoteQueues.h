@@ -38,6 +38,9 @@ public:
     // Nodes, by name, that are not LOST and accept that type in that queue.
     std::vector<std::string> LiveNodesAccepting(const std::string &queue, const std::string &type,
                                                 std::uint64_t definition) const;
+    // After LiveNodesAccepting has returned none: why a live node does not accept that type in its queue of
+    // that name. UnknownNode, without a reason, if none has a queue of that name.
+    Answer WhyNoneAccepts(const std::string &queue, const std::string &type, std::uint64_t definition) const;
 
 private:
     const std::string _ownNode;

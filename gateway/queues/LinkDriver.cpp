@@ -135,7 +135,7 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
                          " of the queue links, this one version " + std::to_string(LinkVersion) +
                          ": no queue message passes between them";
         const std::lock_guard lock(_mutex);
-        _otherVersions.Note(problem, Now());
+        _recent.Note(problem, Now());
         return;
     }
     if (!LinkFrameCodec::Decode(encoded, frame) ||
@@ -156,6 +156,7 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
         {
             _anyDelays = true;
         }
+        NoteRaises(now);
         sooner = ServeBy(_outbox.IsEmpty() ? _links->NextDue() : LinkTime(0));
         large = _incoming.AnyUndecoded();
         TakeNews(news);
@@ -171,6 +172,21 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
         _wake();
     }
     frame.Data.Items.clear();  // they point to bytes that are only borrowed
+}
+
+void LinkDriver::NoteRaises(LinkTime now)
+{
+    const bool raised = _lastIncarnation != 0 && _lastIncarnation != _links->Incarnation();
+    _lastIncarnation = _links->Incarnation();
+    if (raised && _links->NameInUseElsewhere())
+    {
+        Gateway::Problem problem;
+        problem.subject = "node " + _config.Node;
+        problem.reason =
+            "another live node must have the name of this one: it makes this one start its queues "
+            "anew again and again. Give one of them another name";
+        _recent.Note(problem, now);
+    }
 }
 
 void LinkDriver::DecodeLarge(News &news)
@@ -409,7 +425,7 @@ std::vector<Gateway::Problem> LinkDriver::Problems() const
     const std::string storeError = _incarnations.Error();
     const std::lock_guard lock(_mutex);
     std::vector<Gateway::Problem> problems = _incoming.Problems();
-    for (Gateway::Problem &problem : _otherVersions.Problems(Now()))
+    for (Gateway::Problem &problem : _recent.Problems(Now()))
     {
         problems.push_back(std::move(problem));
     }
@@ -418,15 +434,6 @@ std::vector<Gateway::Problem> LinkDriver::Problems() const
         Gateway::Problem problem;
         problem.subject = "state_dir " + _config.StateDir;
         problem.reason = storeError;
-        problems.push_back(problem);
-    }
-    if (_links->NameInUseElsewhere())
-    {
-        Gateway::Problem problem;
-        problem.subject = "node " + _config.Node;
-        problem.reason =
-            "the incarnation of this node had to be raised again and again: another live node must have this "
-            "name";
         problems.push_back(problem);
     }
     return problems;

@@ -167,6 +167,9 @@ private:
     // Without the mutex: decodes the large messages that are complete, and has the links deliver them. For
     // threads that may take that long; every call of the links that may complete a message comes before one.
     void DecodeLarge(News &news);
+    // With the mutex: notes that another live node must have this name, if this one's incarnation was raised
+    // too often.
+    void NoteRaises(LinkTime now);
     void MakeWriter();
     // Writes what the links have sent; without the mutex.
     void WriteOut();
@@ -192,7 +195,8 @@ private:
 
     DelayMeter _delays;
     std::atomic<bool> _anyDelays{false};  // changed with the mutex held
-    RecentProblems _otherVersions;        // nodes that speak another version of the links
+    RecentProblems _recent;               // other versions of the links, and another node of this name
+    std::uint64_t _lastIncarnation = 0;   // of this node, at the last frame; 0: no frame has come
     std::atomic<std::uint64_t> _malformed{0};
 
     LinkDatagrams _sending;  // gateway's thread only

@@ -135,9 +135,12 @@ bool OutgoingQueues::ForwardToAll(const std::string &queue, const MessageType &t
     if (nodes.empty())
     {
         Begin(receipt, 1);
+        // No such queue anywhere is no problem: `*` names no node that must be there.
+        RemoteQueues::Answer answer = _remote.WhyNoneAccepts(queue, type.Name(), DefinitionHash(type));
         const std::string reason = "no live node accepts `" + type.Name() + "` for `" + queue + "`";
         TellRefused("*", queue, type, payload, reason);
-        return Refuse("*", queue, QueueAcceptance::UnknownNode, reason, receipt);
+        return Refuse("*", queue, answer.What, answer.Reason.empty() ? "" : reason + ": " + answer.Reason,
+                      receipt);
     }
     _refusals.Forgive("*", queue);
     Begin(receipt, nodes.size());
@@ -246,8 +249,13 @@ void OutgoingQueues::TellRefused(const std::string &node, const std::string &que
 bool OutgoingQueues::Refuse(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
                             const std::string &reason, const Receipt &receipt)
 {
-    _refusals.Add(node, queue, acceptance, reason);
+    _refusals.Add(node, queue, acceptance, reason, _workspace.GetClock().Monotonic());
     return RefuseAtCall(receipt);
+}
+
+std::vector<Gateway::Problem> OutgoingQueues::Problems() const
+{
+    return _refusals.Problems(_workspace.GetClock().Monotonic());
 }
 
 std::vector<Gateway::LinkStatus> OutgoingQueues::Status() const

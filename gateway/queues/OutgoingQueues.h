@@ -52,7 +52,7 @@ public:
 
     // All links to other nodes, with the messages that were refused before they reached a link.
     std::vector<Gateway::LinkStatus> Status() const;
-    std::vector<Gateway::Problem> Problems() const { return _refusals.Problems(); }
+    std::vector<Gateway::Problem> Problems() const;
 
 private:
     using Receipt = std::shared_ptr<RabitQueueReceipt>;

@@ -11,7 +11,7 @@ constexpr std::size_t MostLinks = 1000;
 }  // namespace
 
 void RefusalCounts::Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
-                        const std::string &reason)
+                        const std::string &reason, Duration now)
 {
     const LinkName link{node, queue};
     const std::lock_guard lock(_mutex);
@@ -26,6 +26,7 @@ void RefusalCounts::Add(const std::string &node, const std::string &queue, Queue
     ++(aboutType ? entry.Type : entry.Unknown);
     SetReason(entry, reason);
     entry.OtherVersion = acceptance == QueueAcceptance::OtherDefinition;
+    entry.Last = now;
 }
 
 void RefusalCounts::SetReason(Entry &entry, const std::string &reason)
@@ -76,13 +77,13 @@ void RefusalCounts::Report(std::map<LinkName, Gateway::LinkStatus> &rows) const
     }
 }
 
-std::vector<Gateway::Problem> RefusalCounts::Problems() const
+std::vector<Gateway::Problem> RefusalCounts::Problems(Duration now) const
 {
     const std::lock_guard lock(_mutex);
     std::vector<Gateway::Problem> problems;
     for (const auto &[link, entry] : _entries)
     {
-        if (!entry.Reason.empty())
+        if (!entry.Reason.empty() && now - entry.Last < Memory)
         {
             Gateway::Problem problem;
             problem.subject = "send " + link.first + "/" + link.second;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -21,17 +22,21 @@ class RefusalCounts
 {
 public:
     using LinkName = std::pair<std::string, std::string>;  // node, queue
+    using Duration = std::chrono::nanoseconds;             // of the monotonic clock
 
-    // Counts one refused message.
+    // A refusal is a problem for this long, unless a message is accepted earlier.
+    static constexpr Duration Memory = std::chrono::minutes(1);
+
+    // Counts one refused message. With an empty reason it is no problem.
     void Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
-             const std::string &reason);
+             const std::string &reason, Duration now);
     // A message was accepted: whatever was wrong is over. Costs nothing while nothing is wrong.
     void Forgive(const std::string &node, const std::string &queue);
 
     void Forget(const std::string &node);
 
     void Report(std::map<LinkName, Gateway::LinkStatus> &rows) const;
-    std::vector<Gateway::Problem> Problems() const;
+    std::vector<Gateway::Problem> Problems(Duration now) const;
 
 private:
     struct Entry
@@ -40,6 +45,7 @@ private:
         std::uint64_t Type = 0;
         std::string Reason;         // empty: over
         bool OtherVersion = false;  // of the type: that is the reason
+        Duration Last{0};           // the time of the last one
     };
 
     void SetReason(Entry &entry, const std::string &reason);

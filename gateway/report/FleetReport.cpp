@@ -74,6 +74,20 @@ void FillNodes(const PeerTable &peers, std::chrono::nanoseconds now, Gateway::Fl
     }
 }
 
+namespace
+{
+// Where the two nodes of one name run, as far as they have told.
+std::string PlacesOf(const PeerTable::Peer &peer)
+{
+    if (!peer.Place.empty() && peer.Place == peer.TwinPlace)
+    {
+        return "; both are on " + peer.Place;
+    }
+    return (peer.Place.empty() ? "" : "; one is on " + peer.Place) +
+           (peer.TwinPlace.empty() ? "" : "; one is on " + peer.TwinPlace);
+}
+}  // namespace
+
 void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet)
 {
     if (peers.OwnNameTwice())
@@ -88,9 +102,8 @@ void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet)
     {
         if (peer->Twice)
         {
-            std::string places = peer->Place.empty() ? "" : "; one is on " + peer->Place;
-            places += peer->TwinPlace.empty() ? "" : "; one is on " + peer->TwinPlace;
-            AddProblem("node " + peer->Node, peer->Node, "two live nodes have this name" + places, fleet);
+            AddProblem("node " + peer->Node, peer->Node, "two live nodes have this name" + PlacesOf(*peer),
+                       fleet);
         }
     }
 }

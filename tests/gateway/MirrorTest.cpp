@@ -354,7 +354,7 @@ TEST_F(MirrorTest, TwoNodesOfOneNameAreReportedByBothAndByOthers)
     const std::string both = "this one is on " + place + ", the other on " + place;
     EXPECT_THAT(first.Problems(), HasSubstr(both));
     EXPECT_THAT(second.Problems(), HasSubstr(both));
-    EXPECT_THAT(ground.Problems(), HasSubstr("; one is on " + place + "; one is on " + place));
+    EXPECT_THAT(ground.Problems(), HasSubstr("; both are on " + place));
 }
 
 TEST_F(MirrorTest, WhyNoDataComesIsSaidByNameWithinTwoSeconds)

@@ -322,6 +322,25 @@ TEST_F(PeerTableTest, WhereTwoNodesOfOneNameRunIsKnownOnceTheySaySoAndForgottenW
     EXPECT_EQ(table.Malformed(), 0u);
 }
 
+TEST_F(PeerTableTest, OfTwoNodesOfOneNameTheOneThatTakesAHigherIncarnationIsNotNamedTwice)
+{
+    const auto hear = [this](std::uint64_t incarnation, Ns at, const std::string &place)
+    {
+        HeardBeat heard = BeatOf("uav1", incarnation, at);
+        NewsOf(heard.Beat).parts.emplace_back().bytes.assign(place.begin(), place.end());
+        table.OnBeat(heard);
+    };
+    for (int i = 1; i <= 4; ++i)
+    {
+        hear(6, i * 500ms, "process 1");
+        hear(5, i * 500ms + 100ms, "process 2");
+    }
+    ASSERT_TRUE(table.Find("uav1")->Twice);
+    hear(7, 2500ms, "process 2");
+    EXPECT_EQ(table.Find("uav1")->Place, "process 2");
+    EXPECT_EQ(table.Find("uav1")->TwinPlace, "process 1");
+}
+
 TEST_F(PeerTableTest, ARestartIsNotTakenForTwoNodes)
 {
     for (int i = 1; i <= 10; ++i)

@@ -361,6 +361,30 @@ TEST_F(QueueTest, AStarSendsToEveryLiveNodeThatAccepts)
     EXPECT_EQ(ground.LinkTo("uav3", "MissionControl").accepted, 0u);
 }
 
+TEST_F(QueueTest, AStarThatNobodyHasAQueueForIsNoProblemButOneOfAnotherTypeIs)
+{
+    EXPECT_FALSE(SendGoto(5, "*/NoSuchQueue"));
+    fleet.RunFor(3s);
+    EXPECT_EQ(ground.LinkTo("*", "NoSuchQueue").refused_unknown, 1u);
+    EXPECT_THAT(ground.Problems(), Not(HasSubstr("NoSuchQueue")));
+    EXPECT_FALSE(ground.Workspace.AddMessageToQueue("*/MissionControl", std::make_shared<Uav::Pose>()));
+    fleet.RunFor(3s);
+    EXPECT_THAT(
+        ground.Problems(),
+        HasSubstr("send */MissionControl: no live node accepts `Uav::Pose` for `MissionControl`: queue "
+                  "`MissionControl` of uav1 does not accept `Uav::Pose`"));
+}
+
+TEST_F(QueueTest, ARefusalIsNoProblemAnyMoreAfterAMinute)
+{
+    EXPECT_FALSE(SendGoto(1, "uav1/Missions"));
+    fleet.RunFor(50s);
+    EXPECT_THAT(ground.Problems(), HasSubstr("send uav1/Missions"));
+    fleet.RunFor(12s);
+    EXPECT_THAT(ground.Problems(), Not(HasSubstr("send uav1/Missions")));
+    EXPECT_EQ(ground.LinkTo("uav1", "Missions").refused_unknown, 1u) << "it stays counted";
+}
+
 TEST_F(QueueTest, ANodeCanAddressItsOwnQueueByItsFullName)
 {
     EXPECT_TRUE(uav.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
