@@ -52,7 +52,7 @@ void HealthMonitor::TakeAnswers()
     {
         const auto *answer = dynamic_cast<const Uav::CommandAck *>(message.get());
         if (answer && answer->stage == Uav::CommandStage::COMMAND_DECLINED)
-            _toSend = _rule.Reason();
+            _toSend = _rule.Cause();
     }
 }
 

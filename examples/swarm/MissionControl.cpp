@@ -68,6 +68,7 @@ Situation MissionControl::LookAround()
         now.Position = GeoPoint{_pose->latitude_deg, _pose->longitude_deg, _pose->altitude_m};
     now.BatteryPercent =
         _health->WasPosted() ? _health->battery_percent : std::numeric_limits<float>::quiet_NaN();
+    now.WantsHome = _health->WasPosted() && _health->wants_home;
     now.Flight = *_mode;
     now.Targets = *_targets;
     now.Others = _others.Poses();
@@ -127,7 +128,17 @@ std::uint32_t MissionControl::Fly(const GeoPoint &point, float speedMps)
 
 void MissionControl::Answer(const std::string &replyTo, const Uav::CommandAck &ack)
 {
-    _answers.Add(replyTo, ack, GetWorkspace().GetClock().Monotonic());
+    const std::chrono::nanoseconds now = GetWorkspace().GetClock().Monotonic();
+    _answers.Add(replyTo, ack, now);
+    // The health monitor repeats its command each second while it is declined.
+    if (ack.stage != Uav::CommandStage::COMMAND_DECLINED ||
+        (ack.reason == _loggedDecline && now - _loggedDeclineAt < LogDeclineAgain))
+        return;
+    _loggedDecline = ack.reason;
+    _loggedDeclineAt = now;
+    WriteLog(
+        Rabit::RabitLogLevel::Warning,
+        (ack.id == 0 ? "a command" : "command " + std::to_string(ack.id)) + " is declined: " + ack.reason);
 }
 
 bool MissionControl::Send(const std::string &aircraft, const Uav::TargetReport &report)

@@ -42,6 +42,9 @@ public:
     void ExecuteUnitOfWork() final;
 
 private:
+    // The same reason is logged once in this time.
+    static constexpr std::chrono::seconds LogDeclineAgain{10};
+
     std::uint32_t Fly(const GeoPoint &point, float speedMps) override;
     void Answer(const std::string &replyTo, const Uav::CommandAck &ack) override;
     bool Send(const std::string &aircraft, const Uav::TargetReport &report) override;
@@ -62,6 +65,8 @@ private:
     Rabit::RabitTimer _acts{ActPeriod};
     Rabit::RabitTimer _stateTimes{StatePeriod};
     std::uint32_t _courses = 0;
+    std::string _loggedDecline;
+    std::chrono::nanoseconds _loggedDeclineAt{0};
     std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();

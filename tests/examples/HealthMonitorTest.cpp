@@ -33,11 +33,12 @@ TEST(HomeRule, SendsHomeOnceForEachSilence)
 {
     HomeRule rule(10);
     EXPECT_EQ(rule.Judge(90, 10), "");
-    EXPECT_EQ(rule.Judge(90, 10.5), "the ground station is silent");
+    EXPECT_EQ(rule.Judge(90, 10.5), "the ground station was silent");
     EXPECT_EQ(rule.Judge(90, 11.5), "");
+    EXPECT_EQ(rule.Reason(), "the ground station is silent");
     EXPECT_EQ(rule.Judge(90, 0), "");
     EXPECT_EQ(rule.Reason(), "");
-    EXPECT_EQ(rule.Judge(90, 11), "the ground station is silent");
+    EXPECT_EQ(rule.Judge(90, 11), "the ground station was silent");
 }
 
 TEST(HomeRule, WhatIsNotKnownIsNoCause)
@@ -131,7 +132,7 @@ TEST_F(HealthMonitor, SendsTheAircraftHomeWhenTheGroundStationIsLostForLong)
     EXPECT_TRUE(SentHomeFor().empty());
     HearOfGround(Rabit::Gateway::NodeState::LOST, 10.1);
     Run(1s);
-    EXPECT_EQ(SentHomeFor(), std::vector<std::string>{"the ground station is silent"});
+    EXPECT_EQ(SentHomeFor(), std::vector<std::string>{"the ground station was silent"});
     EXPECT_EQ(_health.reason, "the ground station is silent");
 }
 

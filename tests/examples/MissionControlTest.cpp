@@ -112,6 +112,26 @@ TEST_F(MissionControl, DeclinesACommandThatCannotBeFlownAndSaysWhy)
     EXPECT_EQ(_gateway->Accepted[0].second.reason, "speed_mps must be from 0.1 to 50, not 0");
 }
 
+TEST_F(MissionControl, SaysWhyItDeclinedACommandEvenIfNobodyWantsTheAnswer)
+{
+    Uav::Goto command = Command(0);
+    command.reply_to.clear();
+    command.speed_mps = -1;
+    testing::internal::CaptureStderr();
+    Receive(command);
+    Receive(command);
+    const std::string log = testing::internal::GetCapturedStderr();
+    const std::string line = "a command is declined: speed_mps must be from 0.1 to 50, not -1";
+    ASSERT_THAT(log, HasSubstr(line));
+    EXPECT_EQ(log.find(line, log.find(line) + 1), std::string::npos) << "the same reason is logged once";
+    EXPECT_EQ(_state.text, "declined: speed_mps must be from 0.1 to 50, not -1");
+    Run(61s);
+    EXPECT_EQ(_state.text, "");
+    Receive(command);
+    Receive(Command(6));
+    EXPECT_EQ(_state.text, "") << "a command that is accepted ends it";
+}
+
 TEST_F(MissionControl, KeepsTheGeofenceOfItsGroundStation)
 {
     const auto fence = std::make_shared<Uav::Geofence>();

@@ -522,6 +522,23 @@ TEST_F(MissionOf2, AGeofenceThatIsNoNumberEnclosesNothing)
     EXPECT_THAT(_output.StagesOf(5), ElementsAre(Stage::COMMAND_DECLINED));
 }
 
+TEST_F(MissionOf2, SaysUntilWhenItsCauseToFlyHomeHeld)
+{
+    _now.WantsHome = true;
+    Pass(0);
+    Uav::GoHome home;
+    home.reason = "the ground station was silent";
+    _mission->Take(home);
+    Pass(0.2);
+    EXPECT_EQ(State().text, "the ground station was silent");
+    _now.WantsHome = false;
+    _now.NowS = 0;
+    Pass(60);
+    EXPECT_EQ(State().text, "the ground station was silent (until 16:54:02 UTC)");
+    Pass(60);
+    EXPECT_EQ(State().text, "the ground station was silent (until 16:54:02 UTC)");
+}
+
 TEST_F(MissionOf2, FliesHomeFromOutsideOfTheGeofence)
 {
     Uav::Geofence far = FenceOf(100);

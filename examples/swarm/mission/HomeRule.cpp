@@ -11,7 +11,7 @@ std::string HomeRule::Judge(float batteryPercent, double groundSilentS)
     const bool news = (low && !_low) || (silent && !_silent);
     _low = low;
     _silent = silent;
-    return news ? Reason() : "";
+    return news ? Cause() : "";
 }
 
 std::string HomeRule::Reason() const
@@ -19,6 +19,11 @@ std::string HomeRule::Reason() const
     if (_low)
         return "the battery is low";
     return _silent ? "the ground station is silent" : "";
+}
+
+std::string HomeRule::Cause() const
+{
+    return _silent && !_low ? "the ground station was silent" : Reason();
 }
 
 }  // namespace Swarm

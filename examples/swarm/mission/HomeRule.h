@@ -14,11 +14,13 @@ public:
 
     explicit HomeRule(double silenceLimitS) : _silenceLimitS(silenceLimitS) {}
 
-    // Returns a new reason to fly home; empty if there is none. The arguments may be NaN: not known, and
-    // never heard.
+    // Returns a new cause to fly home, see Cause; empty if there is none. The arguments may be NaN: not
+    // known, and never heard.
     std::string Judge(float batteryPercent, double groundSilentS);
     // The reason why the aircraft should be at home now; empty if there is none.
     std::string Reason() const;
+    // The same as it is told of a flight home, which may last longer than a silence.
+    std::string Cause() const;
 
 private:
     const double _silenceLimitS;

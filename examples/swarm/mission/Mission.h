@@ -37,6 +37,7 @@ struct Situation
     double GpsTimeS = 0;  // by the clock that stamps poses
     std::optional<GeoPoint> Position;
     float BatteryPercent = 0;  // NaN if it is not known
+    bool WantsHome = false;    // the health monitor's cause to fly home has not passed
     Uav::FlightMode Flight;
     Uav::Targets Targets;                                 // of this aircraft's sensor fusion
     std::map<std::string, Uav::Pose> Others;              // the aircraft that are present now
@@ -66,14 +67,15 @@ class Mission
 {
 public:
     static constexpr double LowBatteryPercent = 25;
-    static constexpr double TrackS = 60;       // follows a target
-    static constexpr double ValidateS = 45;    // looks for a target of another aircraft
-    static constexpr double AnswerS = 55;      // waits for another aircraft's validation
-    static constexpr double AskAgainS = 10;    // those that were busy
-    static constexpr double PatienceS = 60;    // with those that are busy
-    static constexpr double BackToTrackS = 5;  // holds the point of a Goto if it has a recorded track
-    static constexpr double StepM = 15;        // a point to fly to gets a new course if it moved this far
-    static constexpr double RepeatS = 2;       // a course that the autopilot does not fly is sent again
+    static constexpr double TrackS = 60;          // follows a target
+    static constexpr double ValidateS = 45;       // looks for a target of another aircraft
+    static constexpr double AnswerS = 55;         // waits for another aircraft's validation
+    static constexpr double AskAgainS = 10;       // those that were busy
+    static constexpr double PatienceS = 60;       // with those that are busy
+    static constexpr double DeclinedShownS = 60;  // its text tells of a command that it declined
+    static constexpr double BackToTrackS = 5;     // holds the point of a Goto if it has a recorded track
+    static constexpr double StepM = 15;           // a point to fly to gets a new course if it moved this far
+    static constexpr double RepeatS = 2;          // a course that the autopilot does not fly is sent again
     // While it searches and looks at targets, an aircraft flies in its own layer above the altitude of the
     // search area, by the number in its name. So aircraft that cross or circle one target stay apart
     // without coordination. uav1 and uav11 share a layer.
@@ -164,6 +166,9 @@ private:
     Uav::MissionMode _mode = Uav::MissionMode::MISSION_IDLE;
     double _modeSinceS = 0;
     std::string _why;
+    bool _homeByItself = false;  // _why is the health monitor's, and has not passed
+    std::string _declined;       // why the last command was declined, empty once one is accepted
+    double _declinedS = 0;
     bool _hasTrack = false;
     Course _course;
 

@@ -3,6 +3,8 @@
 #include "Mission.h"
 #include "WhyNot.h"
 
+#include <rabit/SystemTimeClock.h>
+
 #include <utility>
 
 namespace Swarm
@@ -15,6 +17,13 @@ std::string TextOf(const Uav::TargetName &name)
     constexpr std::size_t longest = 64;
     const std::string number = std::string("/").append(std::to_string(name.number));
     return name.aircraft.substr(0, longest - number.size()) + number;
+}
+
+// As HH:MM:SS.
+std::string UtcOf(double gpsTimeS)
+{
+    return Rabit::SystemTimeClock::GetSystemTimeClock()->GetUTCTimeStringFromGpsTimeStamp(gpsTimeS).substr(
+        11);
 }
 }  // namespace
 
@@ -30,6 +39,11 @@ void Mission::Update(Situation situation)
         _home = _now.Position;
     if (_now.Flight.phase == Uav::FlightPhase::FLIGHT_RECORDING)
         _hasTrack = true;
+    if (_homeByItself && !_now.WantsHome)
+    {
+        _why += " (until " + UtcOf(_now.GpsTimeS) + " UTC)";
+        _homeByItself = false;
+    }
     _book.Follow(_now.Targets, _target);
 }
 
@@ -86,6 +100,8 @@ void Mission::Decline(const Message &command, const std::string &reason)
     ack.stage = Uav::CommandStage::COMMAND_DECLINED;
     ack.reason = reason;
     _output.Answer(command.reply_to, ack);
+    _declined = reason;
+    _declinedS = _now.NowS;
 }
 
 // Ends the previous command and target, and begins this command.
@@ -106,6 +122,8 @@ void Mission::Accept(const Message &command, Uav::MissionMode mode)
         ++_commands;
     }
     _why.clear();
+    _homeByItself = false;
+    _declined.clear();
     _mode = mode;
     _modeSinceS = _now.NowS;
 }
@@ -170,6 +188,7 @@ void Mission::Take(const Uav::GoHome &command)
         return Decline(command, reason);
     Accept(command, Uav::MissionMode::MISSION_HOME);
     _why = command.reason;
+    _homeByItself = _now.WantsHome && command.id == 0;
     _gotoPoint = WhereHomeIs();
     _gotoSpeedMps = HomeSpeedMps;
 }
@@ -260,7 +279,8 @@ void Mission::Describe(Uav::MissionState &state) const
         state.target = TextOf(finding->name);
         state.partner = _partner;
     }
-    state.text = _why;
+    const bool tellsDeclined = !_declined.empty() && _now.NowS - _declinedS < DeclinedShownS;
+    state.text = tellsDeclined ? "declined: " + _declined + (_why.empty() ? "" : "; " + _why) : _why;
     state.area_declined = _areaDeclined;
     state.has_floor = _floor.LowestM().has_value();
     state.floor_m = static_cast<float>(_floor.LowestM().value_or(0));
