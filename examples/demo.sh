@@ -17,7 +17,8 @@ missing Debian packages and builds what is missing first.
   --transport NAME   DDS implementation: fastdds (default), cyclonedds, or mixed: uav1, uav3, ... and the ground station
                      on fastdds, uav2, uav4, ... on cyclonedds
   --secure           with fresh keys, a folder for each node: strangers are neither heard nor answered
-  --domain N         DDS domain, 0 to 232, with --secure to 230 (default: one that nobody on this machine uses)
+  --domain N         DDS domain, 0 to 232, with --secure to 230, that nobody on this machine uses (default: one
+                     that is free)
   --record DIR       let each process record itself into this folder: see black_box.sh
   --bin DIR          take the programs uav, vision and ground, and with --secure rabit, from this folder; install and
                      build nothing
@@ -26,7 +27,7 @@ missing Debian packages and builds what is missing first.
 Exit code: 0 if every aircraft was up at the end, at least 90 % of the poses that it published were heard, every command
 was acknowledged by the aircraft it was meant for or certainly never reached it, and, if two aircraft or more search, a
 target was found by one of them, validated by another and followed, which takes them about a minute; 1 if not; 2 if an
-option or a track file is wrong.
+option or a track file is wrong, or the domain is in use.
 USAGE
 }
 
@@ -108,6 +109,20 @@ while [ $# -gt 0 ]; do
 done
 [ ${#tracks[@]} -le "$uavs" ] ||
     fail_usage "${#tracks[@]} tracks are too many for --uavs $uavs"
+for track in "${tracks[@]}"; do
+    [ -f "$track" ] && [ -r "$track" ] || fail_usage "--track: there is no file '$track' that can be read"
+done
+
+# The UDP port that every process of a DDS domain listens on (OMG DDSI-RTPS 2.3, 9.6.1.1), in hexadecimal.
+domain_in_use() {
+    local port
+    port=$(printf '%04X' $((7400 + 250 * $1)))
+    grep -q "^ *[0-9]*: [0-9A-F]*:$port " /proc/net/udp /proc/net/udp6 2>/dev/null
+}
+
+# Two nodes of one name would share orders and answers: both fleets would be shown wrong.
+[ -z "$domain" ] || ! domain_in_use "$domain" ||
+    fail_usage "a program of this machine is in DDS domain $domain already: end it, or leave out --domain"
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(dirname "$here")
@@ -121,13 +136,6 @@ fi
 for program in "${programs[@]}"; do
     [ -x "$bin/$program" ] || fail_usage "there is no program $bin/$program"
 done
-
-# The UDP port that every process of a DDS domain listens on (OMG DDSI-RTPS 2.3, 9.6.1.1), in hexadecimal.
-domain_in_use() {
-    local port
-    port=$(printf '%04X' $((7400 + 250 * $1)))
-    grep -q "^ *[0-9]*: [0-9A-F]*:$port " /proc/net/udp /proc/net/udp6 2>/dev/null
-}
 
 # tcp_port_in_use PORT: true if a program listens on it.
 tcp_port_in_use() {

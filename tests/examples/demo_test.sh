@@ -89,7 +89,7 @@ finds_a_target_with_keys_on_both_backends)
     wait_for "$work/out" 'target uav[1-3]/[0-9]* *TRACKED .* validated by uav[1-3], followed'
     laptop=$(sed -n 's/^Strangers are kept out. To look at it: .* nodes --keys \([^ ]*\) .*/\1/p' "$work/err")
     [ "$(stat -c %a "$(dirname "$(dirname "$laptop")")")" = 700 ] || fail "others may look at the keys"
-    # The exit code is 1 if a node has a problem: nobody here accepts pictures.
+    # The exit code is 1 if a node has a problem.
     "$bin/rabit" nodes --keys "$laptop" --interface lo --wait 10 >"$work/nodes" 2>&1 || [ $? -eq 1 ] ||
         fail "who has keys does not see it: $(cat "$work/nodes")"
     "$bin/rabit" nodes --domain "$(sed -n 's/^DDS domain \([0-9]*\).*/\1/p' "$work/err")" --interface lo >"$work/nodes" 2>&1
@@ -157,6 +157,25 @@ refuses_a_bad_track)
     [ "$(cat "$work/err")" = "$work/track.csv:1:21: expected the column name longitude_deg, found 'oops'" ] ||
         fail "another error was expected"
     [ ! -s "$work/out" ] || fail "something was started"
+    ;;
+refuses_a_track_that_is_missing_before_it_builds)
+    # Without --bin it would install and build first.
+    "$root/examples/demo.sh" --uavs 1 --track "$work/none.csv" >"$work/out" 2>"$work/err"
+    status=$?
+    expect_status 2
+    grep -q "^demo.sh: --track: there is no file '$work/none.csv' that can be read" "$work/err" || fail "another error was expected"
+    [ ! -s "$work/out" ] || fail "something was done first"
+    ;;
+refuses_a_domain_in_use)
+    start_demo --uavs 1 --web off --domain 7
+    wait_for "$work/out" 'uav1   UP '
+    "$root/examples/demo.sh" --bin "$bin" --uavs 1 --web off --domain 7 >"$work/out2" 2>"$work/err2"
+    status=$?
+    expect_status 2
+    grep -q '^demo.sh: a program of this machine is in DDS domain 7 already' "$work/err2" || fail "another error was expected: $(cat "$work/err2")"
+    kill -INT "$demo_pid"
+    end_demo
+    expect_no_processes_left
     ;;
 refuses_bad_options)
     for arguments in '--uavs 0' '--uavs 21' '--uavs x' '--seconds 0' '--domain 233' '--transport carrier' '--web 0' --oops; do
