@@ -231,7 +231,7 @@ void OutgoingQueues::SendWaited(const EarlyMessages::Message &message)
     }
     else
     {
-        _refusals.Add(message.Node, message.Queue, answer.What, reason);
+        _refusals.Add(message.Node, message.Queue, answer.What, reason, _workspace.GetClock().Monotonic());
     }
     TellRefused(message.Node, message.Queue, *message.Type, message.Payload, reason);
     _links.Settle(message.Receipt, QueueOutcome::Refused);
