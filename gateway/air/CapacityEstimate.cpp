@@ -165,7 +165,7 @@ void CapacityEstimate::NothingLate(Peer peer, Duration sentAt, Duration now)
     _nothingLateAt = std::max(_nothingLateAt, sentAt);
     const DelayReports::Reports *const said = _reports.Of(peer);
     if (!_limited || said == nullptr || said->back().Delay > Standing ||
-        now - said->back().CameAt < NotCrowdedOut)
+        now - said->back().CameAt < NotCrowdedOut || now - _quietSince < QuietTime)
     {
         return;
     }

@@ -32,7 +32,8 @@ namespace Rabit
 //   a guess would cost every silent wire its speed. A rate falls after three seconds, by a tenth each second
 //   and to a half at most (reports may be missing because of the queue), and does not rise. But if a peer's
 //   last report said that nothing is late, and its beats still come without one, then nothing is late: a rate
-//   that is used then doubles each second. The apparent queue may have been a computer that stood still.
+//   that is used then doubles each second, after three quiet seconds. The apparent queue may have been a
+//   computer that stood still.
 //
 // Sources: the rate is the delivery rate, and the queue is emptied once rather than shared (BBR, Cardwell et
 // al. 2016); a target for the delay above the least one, approached in proportion (LEDBAT, RFC 6817); bytes

@@ -344,12 +344,28 @@ TEST_F(CapacityEstimateTest, WhereNobodySaysAnyMoreThatSomethingIsLateAUsedRateD
     RunUntil(22s);
     Reports = [](Duration) { return false; };
     const double before = Rate();
-    for (Duration now = 22s; now < 26s; now += 500ms)
+    for (Duration now = 22s; now < 29s; now += 500ms)
     {
         RunUntil(now);
         Estimate.NothingLate(0, now, now);
     }
     EXPECT_GE(Rate(), 4.0 * before);
+}
+
+// On a channel that is just full, most beats carry no report.
+TEST_F(CapacityEstimateTest, SoonAfterADelayBeatsWithoutAReportAreNoNews)
+{
+    RunUntil(20s);
+    Reports = [](Duration) { return false; };
+    Estimate.Reported(0, 50ms, 20s, 20s);
+    Estimate.Reported(0, 10ms, 20s, 20s);
+    const double before = Rate();
+    for (Duration now = 20s; now < 23s; now += 500ms)
+    {
+        RunUntil(now);
+        Estimate.NothingLate(0, now, now);
+    }
+    EXPECT_LE(Rate(), 1.1 * before);
 }
 
 TEST_F(CapacityEstimateTest, SilenceAfterALateDatagramIsNoGoodNews)
