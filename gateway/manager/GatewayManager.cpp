@@ -102,7 +102,6 @@ public:
             _workspace.RemoveQueueForwarder(_config.Name);
         }
         ReportUndelivered();
-        _outgoing->Close();
         _presence.Close();
         _subscriptions.Close();
         _foreign.Close();
@@ -132,7 +131,6 @@ public:
             _links.Forget(node);
             _outgoing->Forget(node);
         }
-        _outgoing->Serve();
         _states.Serve(served, _publishers, now);
         if (change.NewLife)
         {

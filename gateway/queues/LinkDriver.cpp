@@ -267,23 +267,9 @@ void LinkDriver::TellAll(const News &news)
     }
     for (const auto &[receipt, outcome] : news.Settled)
     {
-        Settle(receipt, outcome);
-    }
-}
-
-void LinkDriver::Settle(const Receipt &receipt, QueueOutcome outcome)
-{
-    if (receipt)
-    {
         const RabitHandlerThread::Scope scope(_handlers, OfReceipt, receipt);
         receipt->Settle(outcome);
     }
-}
-
-bool LinkDriver::HasHeard(const std::string &node) const
-{
-    const std::lock_guard lock(_mutex);
-    return _links->HasLinkFrom(node);
 }
 
 void LinkDriver::TellTap()
@@ -353,7 +339,7 @@ void LinkDriver::Forget(const std::string &node)
 }
 
 bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, const std::string &type,
-                         const LinkPayload &payload, const Receipt &receipt, Duration waited)
+                         const LinkPayload &payload, const Receipt &receipt)
 {
     LinkEnqueued enqueued;
     bool sooner = false;
@@ -364,7 +350,7 @@ bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, cons
         {
             _links->Configure(node, queue, SendOptions(_config.Send, node, queue), Now());
         }
-        enqueued = _links->Enqueue(node, queue, type, payload, Now(), waited);
+        enqueued = _links->Enqueue(node, queue, type, payload, Now());
         if (enqueued.Accepted())
         {
             if (receipt)

@@ -96,13 +96,9 @@ public:
 
     // Accepts a message for a queue of another node; the receipt (may be null), which has had its Begin, gets
     // the outcome. False: refused, because the link is full or there are too many; the receipt gets nothing.
-    // `waited`: the time since the message was accepted, which counts against its expiry. Any thread.
+    // Any thread.
     bool Enqueue(const std::string &node, const std::string &queue, const std::string &type,
-                 const LinkPayload &payload, const Receipt &receipt, Duration waited = Duration(0));
-    // The outcome of a message that was accepted and did not reach Enqueue; the receipt may be null.
-    void Settle(const Receipt &receipt, QueueOutcome outcome);
-    // True if that node has sent queue messages to this one. Any thread.
-    bool HasHeard(const std::string &node) const;
+                 const LinkPayload &payload, const Receipt &receipt);
 
     // True if messages for that node wait here.
     bool HasPending(const std::string &node) const;

@@ -114,7 +114,7 @@ std::vector<std::string> OutgoingQueues::Known(const std::string &queueName,
             name += "/" + queue;
         }
     }
-    else if (node == _ownNode || _remote.Knows(node) || _links.HasHeard(node))
+    else if (node == _ownNode || _remote.Knows(node))
     {
         known.push_back(queueName);
     }
@@ -155,28 +155,7 @@ bool OutgoingQueues::ForwardToAll(const std::string &queue, const MessageType &t
 bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
                                const LinkPayload &payload, const Receipt &receipt)
 {
-    RemoteQueues::Answer answer = _remote.Ask(node, queue, type.Name(), DefinitionHash(type));
-    if (answer.What == QueueAcceptance::UnknownNode ? _links.HasHeard(node) : !_early.IsEmpty())
-    {
-        switch (_early.Add({.Node = node,
-                            .Queue = queue,
-                            .Type = &type,
-                            .Payload = payload,
-                            .Receipt = receipt,
-                            .Since = _workspace.GetClock().Monotonic()},
-                           [this](const std::string &name) { return _remote.Knows(name); }))
-        {
-            case EarlyMessages::Added::Waits:
-                return true;
-            case EarlyMessages::Added::TooMany:
-                answer = {QueueAcceptance::UnknownNode,
-                          "too many messages wait here for the announcement of `" + node + "`"};
-                break;
-            case EarlyMessages::Added::NotNeeded:
-                answer = _remote.Ask(node, queue, type.Name(), DefinitionHash(type));
-                break;
-        }
-    }
+    const RemoteQueues::Answer answer = _remote.Ask(node, queue, type.Name(), DefinitionHash(type));
     if (answer.What != QueueAcceptance::Accepted)
     {
         TellRefused(node, queue, type, payload, answer.Reason);
@@ -189,52 +168,6 @@ bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue
     }
     _refusals.Forgive(node, queue);
     return true;
-}
-
-void OutgoingQueues::Serve()
-{
-    if (!_early.IsEmpty())
-    {
-        _early.Release(
-            _workspace.GetClock().Monotonic(),
-            [this](const std::string &node) { return _remote.Knows(node); },
-            [this](const EarlyMessages::Message &message) { SendWaited(message); });
-    }
-}
-
-void OutgoingQueues::Forget(const std::string &node)
-{
-    _early.ReleaseAll([this](const EarlyMessages::Message &message) { SendWaited(message); }, node);
-    _refusals.Forget(node);
-}
-
-void OutgoingQueues::Close()
-{
-    _early.ReleaseAll([this](const EarlyMessages::Message &message)
-                      { _links.Settle(message.Receipt, QueueOutcome::Expired); });
-}
-
-void OutgoingQueues::SendWaited(const EarlyMessages::Message &message)
-{
-    const RemoteQueues::Answer answer =
-        _remote.Ask(message.Node, message.Queue, message.Type->Name(), DefinitionHash(*message.Type));
-    std::string reason = answer.Reason;
-    if (answer.What == QueueAcceptance::Accepted)
-    {
-        const auto waited = _workspace.GetClock().Monotonic() - message.Since;
-        if (_links.Enqueue(message.Node, message.Queue, message.Type->Name(), message.Payload,
-                           message.Receipt, waited))
-        {
-            return;
-        }
-        reason = "too many messages for it wait here";  // counted by the link
-    }
-    else
-    {
-        _refusals.Add(message.Node, message.Queue, answer.What, reason, _workspace.GetClock().Monotonic());
-    }
-    TellRefused(message.Node, message.Queue, *message.Type, message.Payload, reason);
-    _links.Settle(message.Receipt, QueueOutcome::Refused);
 }
 
 void OutgoingQueues::TellRefused(const std::string &node, const std::string &queue, const MessageType &type,
@@ -267,13 +200,6 @@ std::vector<Gateway::LinkStatus> OutgoingQueues::Status() const
         rows.emplace(std::move(name), std::move(row));
     }
     _refusals.Report(rows);
-    _early.Visit(
-        [&rows](const EarlyMessages::Message &message)
-        {
-            Gateway::LinkStatus &row = rows[{message.Node, message.Queue}];
-            ++row.accepted;
-            ++row.outbox;
-        });
     std::vector<Gateway::LinkStatus> status;
     for (auto &[name, row] : rows)
     {

@@ -13,7 +13,6 @@
 
 #include "gateway.idl.h"
 #include "presence/RemoteQueues.h"
-#include "queues/EarlyMessages.h"
 #include "queues/LinkDriver.h"
 #include "queues/LinkPayloadPool.h"
 #include "queues/RefusalCounts.h"
@@ -22,11 +21,9 @@ namespace Rabit
 {
 
 // Queues of other nodes, as the managers of this one see them: takes a message added to `<node>/<queue>`,
-// encodes it once, and passes it to the links, or refuses it at the call with a reason. A message for a node
-// from which queue messages came, and whose announcement has not arrived, is accepted and waits for it.
+// encodes it once, and passes it to the links, or refuses it at the call with a reason.
 //
-// Threads: any manager's thread calls Forward; Status and Problems are for any. The rest is for the gateway's
-// thread.
+// Threads: any manager's thread calls Forward; Status and Problems are for any.
 class OutgoingQueues final : public QueueForwarder
 {
 public:
@@ -42,13 +39,8 @@ public:
     std::vector<std::string> Known(const std::string &queueName, const RabitMessage &message) const override;
     void TakenElsewhere(const std::string &queueName) override;
 
-    // Sends the messages that waited for an announcement which has come, and refuses those that waited for
-    // EarlyMessages::LongestWait. After each look at presence.
-    void Serve();
-    // The node is remembered no longer: messages that wait for its announcement are refused.
-    void Forget(const std::string &node);
-    // Messages that still wait expire. After the last Forward.
-    void Close();
+    // The node is remembered no longer.
+    void Forget(const std::string &node) { _refusals.Forget(node); }
 
     // All links to other nodes, with the messages that were refused before they reached a link.
     std::vector<Gateway::LinkStatus> Status() const;
@@ -61,8 +53,6 @@ private:
     // The receipt has had its Begin for this message.
     bool ForwardTo(const std::string &node, const std::string &queue, const MessageType &type,
                    const LinkPayload &payload, const Receipt &receipt);
-    // Enqueues a message that has waited, or settles it as refused.
-    void SendWaited(const EarlyMessages::Message &message);
     bool ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload,
                       const Receipt &receipt);
     void TellRefused(const std::string &node, const std::string &queue, const MessageType &type,
@@ -76,7 +66,6 @@ private:
     const RemoteQueues &_remote;
     LinkDriver &_links;
     const std::shared_ptr<LinkPayloadPool> _payloads = std::make_shared<LinkPayloadPool>();
-    EarlyMessages _early;
     RefusalCounts _refusals;
     const std::shared_ptr<GatewayTap> _tap;
 };

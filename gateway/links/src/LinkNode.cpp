@@ -109,12 +109,6 @@ bool LinkNode::HasPending(std::string_view node) const
     return peer != nullptr && !peer->MayBeForgotten();
 }
 
-bool LinkNode::HasLinkFrom(std::string_view source) const
-{
-    const LinkPeer *peer = FindPeer(source);
-    return peer != nullptr && !peer->AllReceivers().empty();
-}
-
 std::uint64_t LinkNode::IncarnationTo(std::string_view node) const
 {
     const LinkPeer *peer = FindPeer(node);
@@ -169,7 +163,7 @@ LinkRefusal LinkNode::Configure(std::string_view destination, std::string_view q
 }
 
 LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
-                               LinkPayload payload, LinkTime now, LinkTime waited)
+                               LinkPayload payload, LinkTime now)
 {
     if (!IsPossibleName(type))
     {
@@ -190,7 +184,7 @@ LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view qu
     {
         known = _types.emplace(type).first;
     }
-    refusal = sender->Enqueue(_nextId, *known, std::move(payload), now, waited);
+    refusal = sender->Enqueue(_nextId, *known, std::move(payload), now);
     if (refusal != LinkRefusal::None)
     {
         return {.Refusal = refusal};

@@ -30,8 +30,7 @@ LinkSender::LinkSender(LinkContext &context, PathControl &path, const std::uint6
 }
 
 // Rule S1: full by count or bytes -> refuse, change nothing else.
-LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now,
-                                LinkTime waited)
+LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now)
 {
     ExpireWaiting(now);
     const std::size_t bytes = payload ? payload->Size() : 0;
@@ -59,7 +58,7 @@ LinkRefusal LinkSender::Enqueue(std::uint64_t id, const std::string &type, LinkP
     {
         _probe = true;  // something new need not wait for a timer that has backed off
     }
-    const LinkTime expiresAt = _options.Expire > LinkTime(0) ? now + _options.Expire - waited : LinkNever;
+    const LinkTime expiresAt = _options.Expire > LinkTime(0) ? now + _options.Expire : LinkNever;
     _outbox.Add({.Id = id,
                  .ExpiresAt = expiresAt,
                  .Type = &type,

@@ -27,8 +27,7 @@ public:
                std::string destination, std::string queue, const LinkOptions &options);
 
     // Rule S1. `type` must live as long as this object.
-    LinkRefusal Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now,
-                        LinkTime waited);
+    LinkRefusal Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now);
 
     // Rules S3 and S7 and the timers: everything that is due except sending. `open`: the peer has given a
     // token and is not silent.

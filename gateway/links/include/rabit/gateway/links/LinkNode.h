@@ -80,14 +80,10 @@ public:
     // True if there is a link to that queue of that node; Configure no longer changes its options.
     bool HasLinkTo(std::string_view destination, std::string_view queue) const;
 
-    // True if there is a link from that node: it has sent messages for a queue that is accepted here.
-    bool HasLinkFrom(std::string_view source) const;
-
     // Accepts a message for a queue of another node, or refuses it at once. The link is made on first use,
     // with the options of Configure or else default ones. Rule S1. Call Run when LinkEnqueued::Due says.
-    // `waited`: for how long the message has waited elsewhere, which counts against LinkOptions::Expire.
     LinkEnqueued Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
-                         LinkPayload payload, LinkTime now, LinkTime waited = LinkTime(0));
+                         LinkPayload payload, LinkTime now);
 
     // Processes a frame from a peer's gateway, frame.Source. A frame that is malformed or meant for another
     // node is dropped and counted, and changes nothing else: false. Fills in the fields that a short frame
