@@ -166,8 +166,8 @@ TEST_F(SwarmOverNetwork, GoesHomeWhenTheGroundStationIsGoneAndStaysThere)
     EXPECT_NE(ModeOf("uav1"), Uav::MissionMode::MISSION_HOME);
     EXPECT_TRUE(ComesTo("uav1", Uav::MissionMode::MISSION_HOME, 8s));
     EXPECT_TRUE(ComesTo("uav2", Uav::MissionMode::MISSION_HOME, 2s));
-    EXPECT_EQ(Of<Uav::MissionState>("uav1", "MissionState").text.substr(0, 28),
-              "the ground station is silent");
+    EXPECT_EQ(Of<Uav::MissionState>("uav1", "MissionState").text.substr(0, 29),
+              "the ground station was silent");
     _fleet.RunFor(120s);
     EXPECT_EQ(ModeOf("uav1"), Uav::MissionMode::MISSION_HOME);
 }

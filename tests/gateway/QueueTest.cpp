@@ -285,6 +285,27 @@ TEST_F(QueueTest, ARefusalIsNoProblemAnyMoreAfterAMinute)
     EXPECT_EQ(ground.LinkTo("uav1", "Missions").refused_unknown, 1u) << "it stays counted";
 }
 
+TEST_F(QueueTest, AnotherNodeOfThisNameIsNoProblemAnyMoreOnceItIsGone)
+{
+    const char *const problem = "another live node must have the name of this one";
+    SimulatedNode &twin = fleet.Add(GroundConfig(), 1.5e9, "twin");
+    bool wasTold = false;
+    for (std::uint32_t i = 1; i <= 30; ++i)
+    {
+        SendGoto(i);
+        auto message = std::make_shared<Uav::Goto>();
+        message->id = 100 + i;
+        twin.Workspace.AddMessageToQueue("uav1/MissionControl", message);
+        fleet.RunFor(2s);
+        Take(mission);
+        wasTold = wasTold || ground.Problems().find(problem) != std::string::npos;
+    }
+    ASSERT_TRUE(wasTold);
+    fleet.Stop("twin");
+    fleet.RunFor(30s);
+    EXPECT_THAT(ground.Problems(), Not(HasSubstr(problem)));
+}
+
 TEST_F(QueueTest, ANodeCanAddressItsOwnQueueByItsFullName)
 {
     EXPECT_TRUE(uav.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));

@@ -584,7 +584,44 @@ async function putsAReplayThatIsOverLast(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+// Its new place has no line to where the one before was last.
+async function beginsTheTrailOfARestartedAircraftAnew(programs) {
+  const {url} = await startFixture(programs, 1);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const starts = await fleet.page.evaluate(async () => {
+    const {Trails} = await import('/drawing.js');
+    const trails = new Trails();
+    const map = {project: ([latitude, longitude]) => ({x: longitude, y: latitude})};
+    [7, 8, 9, 1, 2, 3].forEach((number, i) => trails.add(map, {node: 'uav1', pose: {latitude_deg: i, longitude_deg: i, number}}, 0.6 * i));
+    return trails.trails.get('uav1').map(({number, isStart}) => `${number}${isStart ? ' begins' : ''}`);
+  });
+  assert.deepEqual(starts, ['7', '8', '9', '1 begins', '2', '3']);
+  assert.deepEqual(fleet.errors, []);
+}
+
+// In the widest letters, on a screen that leaves the table the least room.
+async function cutsNoButtonInTheTable(programs) {
+  const {fixture, url} = await startFixture(programs, 3);
+  await openBrowser({viewport: {width: 1024, height: 768}});
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  while ((await fleet.data('theme')) !== 'contrast') await page.keyboard.press('t');
+  fixture.tell('battery uav2 9');
+  fixture.tell('lost uav2');
+  await becomes(() => page.isVisible('button.forget'), 'it can be dismissed');
+  const cut = await page.evaluate(() => {
+    const button = document.querySelector('button.forget').getBoundingClientRect();
+    const table = document.querySelector('.fleet .scroll').getBoundingClientRect();
+    return button.right - table.right;
+  });
+  assert.ok(cut <= 0, `${cut} pixels of it are cut off`);
+  assert.deepEqual(fleet.errors, []);
+}
+
 export const cases = {
+  begins_the_trail_of_a_restarted_aircraft_anew: beginsTheTrailOfARestartedAircraftAnew,
+  cuts_no_button_in_the_table: cutsNoButtonInTheTable,
   asks_again_before_a_far_search_area: asksAgainBeforeAFarSearchArea,
   keeps_the_aircraft_on_the_map_if_the_area_is_far: keepsTheAircraftOnTheMapIfTheAreaIsFar,
   calls_home_those_that_have_a_mission: callsHomeThoseThatHaveAMission,
