@@ -82,7 +82,8 @@ TEST_F(ProblemsInLog, EachIsToldByNameWithinFiveSeconds)
                                      HasSubstr("accept Ground: the local queue `Ground` does not hold"),
                                      HasSubstr("send uav1/MissionControl: ")));
     fleet.RunFor(10min);
-    EXPECT_EQ(log.Lines().size(), 7u) << "each once";
+    EXPECT_EQ(log.Lines().size(), 8u) << "each once, and that the refused message is over";
+    EXPECT_THAT(log.Lines().back(), HasSubstr("no longer: send uav1/MissionControl: "));
 }
 
 TEST_F(ProblemsInLog, EachIsToldOnceMoreWhenItIsGone)
