@@ -87,16 +87,21 @@ MUTATIONS = [
     duplicates("they are forgotten at once",
                "return std::none_of(usable.begin(), usable.end(), "
                "[&](const HostNetwork &network) { return network.IsSame(found); });", "return true;"),
+    # Recent entries
+    Mutation("an old value stays", COMMON + "RecentMap.h", "found->second->second = std::move(value);", "",
+             f"{PROGRAM}:RecentMap.*"),
+    Mutation("an entry that is put again is forgotten first", COMMON + "RecentMap.h",
+             "_entries.splice(_entries.end(), _entries, found->second);", "", f"{PROGRAM}:RecentMap.*"),
     # Users and changes
     gate("a change does not turn users away", "_gate._changing = true;", ""),
     # The other tests of UseGate would wait for ever to see the change.
-    gate("a change does not wait for users", "_gate._event.wait(lock, [this] { return _gate._users == 0; });", "",
+    gate("a change does not wait for users", "_gate._mutex.lock();", "_gate._mutex.lock_shared();",
          "AChangeAndItsUsersNeverOverlap"),
     gate("a change never ends", "_gate._changing = false;", ""),
-    gate("users do not heed a change", "if (_changing) { return false; }", ""),
+    gate("users do not heed a change", "if (!gate._changing)", "if (true)"),
     # The session
     session("writes go on while it joins", "const UseGate::Change change(_shared->Gate);", ""),
-    session("counters fall", "_before = Sum(_before, _shared->Inner->Counters());", ""),
+    session("topics of a session that ended stay", "_shared->Topics->ForgetRemote();", ""),
     session("a peer is lost once", "for (int i = 0; i < count && _onPeer; ++i)", "if (_onPeer)"),
     session("a peer that left is lost too", "else if (--_peers[peer] <= 0)", "else if (false)"),
     session("a failure is not told", "if (_failure)", "if (false)"),

@@ -54,11 +54,12 @@ HardwareAddresses::Duration HardwareAddresses::RereadAfter(const Host &host, Tim
     {
         return Unknown;
     }
-    if (_absent.size() >= MostAbsent)
+    const TimePoint *const since = _absent.Find(host);
+    if (since == nullptr)
     {
-        _absent.clear();
+        _absent.Put(host, now);
     }
-    return now - _absent.try_emplace(host, now).first->second < NewFor ? Unknown : Known;
+    return since == nullptr || now - *since < NewFor ? Unknown : Known;
 }
 
 bool HardwareAddresses::HasToAsk(const Host &host, TimePoint now)
@@ -88,7 +89,7 @@ void HardwareAddresses::Refresh(TimePoint now)
                         &flags) == 5 &&
             (flags & IsProxy) == 0)
         {
-            _absent.erase(host);
+            _absent.Erase(host);
             if ((flags & HasAddress) != 0)
             {
                 _known.insert(host);

@@ -10,6 +10,8 @@
 #include <set>
 #include <string>
 
+#include "common/RecentMap.h"
+
 namespace Rabit
 {
 
@@ -66,7 +68,7 @@ private:
     std::optional<TimePoint> _readAt;  // guarded by _mutex, like the members below
     std::set<Host> _known;
     std::map<Host, std::optional<TimePoint>> _awaited;  // when a datagram went to the host
-    std::map<Host, TimePoint> _absent;                  // since when it has had no entry
+    RecentMap<Host, TimePoint> _absent{MostAbsent};     // since when it has had no entry
 };
 
 }  // namespace Rabit

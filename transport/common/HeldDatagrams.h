@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Assert.h>
+
 #include <cstddef>
 #include <deque>
 #include <functional>
@@ -23,7 +25,11 @@ public:
     class Scope
     {
     public:
-        explicit Scope(HeldDatagrams &held) : _held(held) { _ofThread = this; }
+        explicit Scope(HeldDatagrams &held) : _held(held)
+        {
+            RABIT_ASSERT(_ofThread == nullptr);
+            _ofThread = this;
+        }
         ~Scope() { _ofThread = nullptr; }
         Scope(const Scope &) = delete;
         Scope &operator=(const Scope &) = delete;

@@ -1,8 +1,11 @@
 // KeyExchangeOutbox: choice of the datagrams that go next.
 #include "common/KeyExchangeOutbox.h"
 
+#include <rabit/base/Assert.h>
+
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -138,6 +141,9 @@ std::vector<KeyExchangeOutbox::Datagram> KeyExchangeOutbox::TakeDue(TimePoint no
 {
     std::vector<Datagram> taken;
     Expire(now);
+    RABIT_ASSERT(_unanswered == std::accumulate(_peers.begin(), _peers.end(), std::size_t{0},
+                                                [](std::size_t sum, const auto &peer)
+                                                { return sum + peer.second.Unanswered; }));
     while (_freeAt <= now)
     {
         const auto next = Next(now);
@@ -204,6 +210,10 @@ void KeyExchangeOutbox::TakeMessage(Peer &peer, TimePoint now, std::vector<Datag
     peer.SaidAgainAt = now + peer.Gap;
     peer.IsRepeated = peer.IsRepeated || again;
     peer.Rest.clear();
+    if (_repeatsFinal && peer.Said == Step::Final)
+    {
+        peer.SaidFinal = peer.Waiting->Datagrams;
+    }
     std::move(peer.Waiting->Datagrams.begin(), peer.Waiting->Datagrams.end(), std::back_inserter(taken));
     peer.Waiting.reset();
 }

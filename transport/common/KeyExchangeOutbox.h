@@ -41,6 +41,10 @@ namespace Rabit
 // - Datagrams protected as a whole are scheduled in the same way if they are for a peer with a recent
 //   exchange. So is control of this kind to all peers, since the vendors repeat it too quickly as well.
 //   Otherwise they are sent unchanged.
+// - The last message of a handshake answers the peer's certificate (Step::Reply). A vendor that sends it once
+//   never answers a peer that did not get it, and shows its certificate again. If `repeatsFinal`, it is
+//   repeated here, FinalDelay after the certificate: Fast DDS does not listen while it sends its certificate,
+//   and never a second time to the same message.
 // - Datagrams of idle endpoints are dropped: the vendors would request data from each other that never comes.
 // - A rate limits all of this, if one is set.
 //
@@ -73,6 +77,7 @@ public:
     static constexpr double ControlShare = 0.25;
     // Bytes of control that may go before any others, or after a pause.
     static constexpr double MostControlAhead = 2000.0;
+    static constexpr Milliseconds FinalDelay{50};
     static constexpr int Calm = 4;
     static constexpr Milliseconds LongestCalm{3000};
     static constexpr Milliseconds LongestWait{15000};
@@ -89,6 +94,8 @@ public:
         std::uint64_t Route = 0;
         std::vector<std::uint8_t> Bytes;
     };
+
+    explicit KeyExchangeOutbox(bool repeatsFinal = false) : _repeatsFinal(repeatsFinal) {}
 
     // Limits the rate to `most` bytes per second; 0: unlimited.
     void SetRate(double most) { _most = most; }
@@ -154,9 +161,10 @@ private:
         std::optional<Message> Waiting;
         std::optional<Step> Said;  // handshake step sent last; if set, then:
         std::uint64_t SaidNumber = 0;
-        TimePoint SaidAgainAt;      // no repetition before this
-        Duration Gap{0};            // interval until SaidAgainAt, and between later ones
-        std::deque<Datagram> Rest;  // later fragments of the message sent last
+        std::vector<Datagram> SaidFinal;  // to be repeated, if Said is Final
+        TimePoint SaidAgainAt;            // no repetition before this
+        Duration Gap{0};                  // interval until SaidAgainAt, and between later ones
+        std::deque<Datagram> Rest;        // later fragments of the message sent last
         std::deque<Keys> KeysWaiting;
         TimePoint KeysSaidAt{};
         std::map<ControlKind, Control> Controls;
@@ -216,6 +224,7 @@ private:
     Duration LongControlGapNow() const;
     void BeginControlAnew(Peer &peer);
 
+    const bool _repeatsFinal;
     double _most = 0.0;
     TimePoint _freeAt{};  // when the rate allows the next datagram
     std::size_t _window = FirstWindow;

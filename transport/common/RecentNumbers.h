@@ -1,6 +1,8 @@
 // Numbers for keys that peers can make up, such as addresses.
 #pragma once
 
+#include <rabit/base/Assert.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -36,6 +38,7 @@ public:
         _used.emplace_front(key, _next);
         _byKey.emplace(key, _used.begin());
         _byNumber.emplace(_next, _used.begin());
+        RABIT_ASSERT(_byKey.size() == _used.size() && _byNumber.size() == _used.size());
         return {_next++, true};
     }
 

@@ -6,16 +6,26 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "common/PeerPlace.h"
+#include "common/SessionContext.h"
 
 namespace Rabit
 {
 
-class BackendSession : public TransportSession
+class BackendSession
 {
 public:
+    // Closes. All writers and readers must be gone.
+    virtual ~BackendSession() = default;
+    // As in TransportSession, for topics and QoS that were checked.
+    virtual std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
+                                                          const std::vector<std::string> &partitions) = 0;
+    virtual std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
+                                                          const std::vector<std::string> &partitions,
+                                                          SampleHandler handler) = 0;
     // The addresses of each Rabit session that it knows now. Any thread.
     virtual std::vector<PeerPlace> PeerPlaces() const = 0;
 };
@@ -25,10 +35,9 @@ class RejoiningBackend
 public:
     virtual ~RejoiningBackend() = default;
     // Joins the network. In `settings`, Interfaces are addresses of this host, and empty only if
-    // FindsNetworks(); Peers are `address` or `address:port`. Discovery waits for `turns`. Throws
-    // TransportError.
-    virtual std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                                 std::shared_ptr<DiscoveryTurns> turns) = 0;
+    // FindsNetworks(); Peers are `address` or `address:port`. Throws TransportError.
+    virtual std::unique_ptr<BackendSession> Open(const TransportSettings &settings,
+                                                 const SessionContext &context) = 0;
     // Throws TransportError if TransportSettings::BackendConfig cannot be read, or if the vendor refuses it,
     // as far as that can be told without joining the network.
     virtual void CheckConfig(const TransportSettings &settings) const = 0;

@@ -27,11 +27,11 @@ public:
     ~Rejoining() override { Leave(*_shared, *this); }
 
 protected:
-    using Make = std::function<std::unique_ptr<Endpoint>(TransportSession &)>;
+    using Make = std::function<std::unique_ptr<Endpoint>(BackendSession &)>;
 
     Rejoining(std::shared_ptr<RejoiningShared> shared, const TopicDescription &topic, const TopicQos &qos,
               Make make)
-        : _shared(std::move(shared)), _make(std::move(make)), _use(_shared->Topics, topic)
+        : _shared(std::move(shared)), _make(std::move(make)), _use(*_shared->Topics, topic)
     {
         CheckQos(topic, qos);
         Enter(*_shared, *this);
@@ -48,7 +48,7 @@ protected:
     const std::shared_ptr<RejoiningShared> _shared;
 
 private:
-    void Open(TransportSession &session) final { _inner = _make(session); }
+    void Open(BackendSession &session) final { _inner = _make(session); }
     void Close() final { _inner.reset(); }
 
     const Make _make;
@@ -63,7 +63,7 @@ public:
                     const TopicQos &qos, const std::vector<std::string> &partitions,
                     const SampleHandler &handler)
         : Rejoining(std::move(shared), topic, qos,
-                    [=](TransportSession &session)
+                    [=](BackendSession &session)
                     { return session.CreateReader(topic, qos, partitions, handler); })
     {
     }
@@ -80,7 +80,7 @@ public:
     RejoiningWriter(std::shared_ptr<RejoiningShared> shared, const TopicDescription &topic,
                     const TopicQos &qos, const std::vector<std::string> &partitions)
         : Rejoining(std::move(shared), topic, qos,
-                    [=](TransportSession &session) { return session.CreateWriter(topic, qos, partitions); })
+                    [=](BackendSession &session) { return session.CreateWriter(topic, qos, partitions); })
     {
     }
 

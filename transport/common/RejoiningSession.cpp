@@ -22,23 +22,6 @@ using std::chrono::milliseconds;
 // addresses that peers announce.
 constexpr milliseconds PeerPeriod{500};
 
-TransportCounters Sum(TransportCounters a, const TransportCounters &b)
-{
-    a.WriteTimeouts += b.WriteTimeouts;
-    a.WriteFailures += b.WriteFailures;
-    a.HandlerExceptions += b.HandlerExceptions;
-    a.IncompatibleQos += b.IncompatibleQos;
-    a.SamplesLost += b.SamplesLost;
-    a.InconsistentTypes += b.InconsistentTypes;
-    a.MalformedSamples += b.MalformedSamples;
-    a.MalformedDatagrams += b.MalformedDatagrams;
-    a.DiscoveryDatagrams += b.DiscoveryDatagrams;
-    a.DiscoveryBytes += b.DiscoveryBytes;
-    a.SampleDatagrams += b.SampleDatagrams;
-    a.SampleBytes += b.SampleBytes;
-    return a;
-}
-
 const TransportSettings &Checked(const TransportSettings &settings)
 {
     CheckSettings(settings);
@@ -152,38 +135,6 @@ std::unique_ptr<TransportReader> RejoiningSession::CreateReader(const TopicDescr
     return std::make_unique<RejoiningReader>(_shared, topic, qos, partitions, std::move(handler));
 }
 
-TransportCounters RejoiningSession::Counters() const
-{
-    std::unique_lock structure(_shared->Structure, std::try_to_lock);
-    if (!structure)
-    {
-        // The caller does not wait for the network to be joined.
-        const std::lock_guard lock(_mutex);
-        return _lastCounters;
-    }
-    auto counters = Sum(_before, _shared->Log->Read());
-    if (_shared->Inner != nullptr)
-    {
-        counters = Sum(counters, _shared->Inner->Counters());
-    }
-    const std::lock_guard lock(_mutex);
-    return _lastCounters = counters;
-}
-
-std::vector<RemoteEndpoint> RejoiningSession::RemoteEndpointsOn(const std::string &topic) const
-{
-    const std::unique_lock structure(_shared->Structure, std::try_to_lock);
-    return structure && _shared->Inner != nullptr ? _shared->Inner->RemoteEndpointsOn(topic)
-                                                  : std::vector<RemoteEndpoint>();
-}
-
-std::vector<std::string> RejoiningSession::RemoteTopics() const
-{
-    const std::unique_lock structure(_shared->Structure, std::try_to_lock);
-    return structure && _shared->Inner != nullptr ? _shared->Inner->RemoteTopics()
-                                                  : std::vector<std::string>();
-}
-
 std::vector<SettingsProblem> RejoiningSession::NetworkProblems() const
 {
     const std::lock_guard lock(_mutex);
@@ -295,8 +246,11 @@ void RejoiningSession::OnPeer(const PeerEvent &event)
 
 void RejoiningSession::Open(const Current &current)
 {
-    _shared->Inner = _backend->Open(
-        current.Settings, [this](const PeerEvent &event) { OnPeer(event); }, _turns);
+    _shared->Inner =
+        _backend->Open(current.Settings, {.Log = _shared->Log,
+                                          .Topics = _shared->Topics,
+                                          .OnPeer = [this](const PeerEvent &event) { OnPeer(event); },
+                                          .Turns = _turns});
     _openedPeers = current.Settings.Peers;
     try
     {
@@ -350,11 +304,8 @@ void RejoiningSession::CloseAll()
     {
         endpoint->Close();
     }
-    if (_shared->Inner != nullptr)
-    {
-        _before = Sum(_before, _shared->Inner->Counters());
-        _shared->Inner.reset();
-    }
+    _shared->Inner.reset();
+    _shared->Topics->ForgetRemote();
     std::map<Identity, int> lost;
     {
         const std::lock_guard lock(_mutex);

@@ -57,9 +57,12 @@ public:
     std::unique_ptr<TransportReader> CreateReader(const TopicDescription &topic, const TopicQos &qos,
                                                   const std::vector<std::string> &partitions,
                                                   SampleHandler handler) override;
-    TransportCounters Counters() const override;
-    std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override;
-    std::vector<std::string> RemoteTopics() const override;
+    TransportCounters Counters() const override { return _shared->Log->Read(); }
+    std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
+    {
+        return _shared->Topics->RemoteOn(topic);
+    }
+    std::vector<std::string> RemoteTopics() const override { return _shared->Topics->RemoteTopics(); }
     std::vector<SettingsProblem> NetworkProblems() const override;
     DiscoveryTurns *Discovery() override { return _turns.get(); }
 
@@ -95,11 +98,9 @@ private:
     const std::shared_ptr<RejoiningShared> _shared;
     const std::shared_ptr<DiscoveryTurns> _turns = std::make_shared<DiscoveryTurns>();
     HandlerGate _peerGate;
-    TransportCounters _before;  // of the backend's sessions before this one; guarded by Structure
     mutable std::mutex _mutex;
-    std::map<Identity, int> _peers;           // sessions that the backend knows now; guarded by _mutex
-    std::vector<SettingsProblem> _problems;   // guarded by _mutex
-    mutable TransportCounters _lastCounters;  // guarded by _mutex
+    std::map<Identity, int> _peers;          // sessions that the backend knows now; guarded by _mutex
+    std::vector<SettingsProblem> _problems;  // guarded by _mutex
     // Used only by Look():
     RejoinDecision _decision;
     DuplicateAddresses _duplicates;

@@ -18,7 +18,7 @@ namespace Rabit
 class RejoiningEndpoint
 {
 public:
-    virtual void Open(TransportSession &session) = 0;
+    virtual void Open(BackendSession &session) = 0;
     virtual void Close() = 0;
 
 protected:
@@ -29,13 +29,13 @@ protected:
 struct RejoiningShared
 {
     explicit RejoiningShared(const TransportSettings &settings)
-        : Log(std::make_shared<SessionLog>(settings)), Topics(Log)
+        : Log(std::make_shared<SessionLog>(settings)), Topics(std::make_shared<TopicRegistry>(Log))
     {
     }
 
     const std::shared_ptr<SessionLog> Log;
     // Refuses an impossible topic even while there is no session of the backend.
-    TopicRegistry Topics;
+    const std::shared_ptr<TopicRegistry> Topics;
     UseGate Gate;                                // guards the backend's objects that the endpoints hold
     std::mutex Structure;                        // guards the session and the list; taken before Gate
     std::unique_ptr<BackendSession> Inner;       // nullptr while not joined; guarded by Structure

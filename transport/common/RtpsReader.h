@@ -120,6 +120,17 @@ void VisitSubmessages(std::span<Byte> message, const Visit &visit)
     }
 }
 
+// The writer that a submessage of a writer or a reader (IsDelivery) names; empty if it is cut off.
+inline std::optional<EntityId> WriterOf(const ConstSubmessage &submessage)
+{
+    const bool isData =
+        submessage.Kind == SubmessageKind::Data || submessage.Kind == SubmessageKind::DataFrag;
+    RtpsReader body = submessage.Reader();
+    body.Skip(isData ? WriterInData : sizeof(EntityId));
+    const EntityId writer = body.Entity();
+    return body.IsGood() ? std::optional(writer) : std::nullopt;
+}
+
 // The prefix with which the bytes begin, such as the body of an INFO_DST; zero if there are too few.
 inline GuidPrefix PrefixOf(std::span<const std::uint8_t> bytes)
 {
@@ -146,6 +157,27 @@ inline std::optional<ListParameter> TakeParameter(RtpsReader &list)
     }
     found.Value = list.Bytes(length);
     return list.IsGood() ? std::optional(found) : std::nullopt;
+}
+
+// True if a payload, which must have an encapsulation header (10.2), is a little-endian list of parameters.
+inline bool IsLittleEndianList(std::span<const std::uint8_t> payload)
+{
+    return payload[1] == 3;
+}
+
+// Calls visit(parameter) for each parameter of the list in a payload, up to the first unsound one.
+template <typename Visit>
+void VisitParameters(std::span<const std::uint8_t> payload, const Visit &visit)
+{
+    if (payload.size() < EncapsulationSize)
+    {
+        return;
+    }
+    RtpsReader list(payload.subspan(EncapsulationSize), IsLittleEndianList(payload));
+    while (const auto parameter = TakeParameter(list))
+    {
+        visit(*parameter);
+    }
 }
 
 }  // namespace Rabit::Rtps

@@ -1,6 +1,5 @@
 #include "common/RtpsTraffic.h"
 
-#include <optional>
 #include <utility>
 
 #include "common/RtpsReader.h"
@@ -12,19 +11,7 @@ namespace
 {
 
 using Rtps::ConstSubmessage;
-using Rtps::EntityId;
 using Rtps::SubmessageKind;
-
-// The writer that the submessage names; empty if it is cut off.
-std::optional<EntityId> WriterOf(const ConstSubmessage &submessage)
-{
-    const bool isData =
-        submessage.Kind == SubmessageKind::Data || submessage.Kind == SubmessageKind::DataFrag;
-    Rtps::RtpsReader body = submessage.Reader();
-    body.Skip(isData ? Rtps::WriterInData : sizeof(EntityId));
-    const EntityId writer = body.Entity();
-    return body.IsGood() ? std::optional(writer) : std::nullopt;
-}
 
 bool IsOfParticipant(const ConstSubmessage &submessage)
 {
@@ -62,6 +49,21 @@ Announcing AnnouncingOf(std::span<const std::uint8_t> message)
                                    Rtps::IsDelivery(submessage.Kind) && !IsOfParticipant(submessage) ? 1 : 0;
                            });
     return {.Any = announcements > 0, .Alone = announcements > 0 && others == 0};
+}
+
+Rtps::GuidPrefix DestinationOf(std::span<const std::uint8_t> message)
+{
+    Rtps::GuidPrefix to{};
+    Rtps::VisitSubmessages(
+        message,
+        [&to](const ConstSubmessage &submessage)
+        {
+            if (submessage.Kind == SubmessageKind::InfoDestination && to == Rtps::GuidPrefix{})
+            {
+                to = Rtps::PrefixOf(submessage.Body());
+            }
+        });
+    return to;
 }
 
 }  // namespace Rabit

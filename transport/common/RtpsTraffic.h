@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "common/Rtps.h"
+
 namespace Rabit
 {
 
@@ -22,5 +24,8 @@ struct Announcing
     bool Alone = false;
 };
 Announcing AnnouncingOf(std::span<const std::uint8_t> message);
+
+// The participant named by the first INFO_DST of a message; zero: none is named.
+Rtps::GuidPrefix DestinationOf(std::span<const std::uint8_t> message);
 
 }  // namespace Rabit

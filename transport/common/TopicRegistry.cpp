@@ -1,5 +1,7 @@
 #include "common/TopicRegistry.h"
 
+#include <rabit/base/Assert.h>
+
 #include <set>
 #include <vector>
 
@@ -62,7 +64,8 @@ void TopicRegistry::Close(const std::string &topic)
 {
     const std::lock_guard lock(_mutex);
     const auto open = _open.find(topic);
-    if (open != _open.end() && --open->second.Count == 0)
+    RABIT_ASSERT(open != _open.end());
+    if (--open->second.Count == 0)
     {
         _open.erase(open);
     }
@@ -115,6 +118,12 @@ void TopicRegistry::RemoteGone(const WriterId &endpoint)
 {
     const std::lock_guard lock(_mutex);
     _remote.erase(endpoint);
+}
+
+void TopicRegistry::ForgetRemote()
+{
+    const std::lock_guard lock(_mutex);
+    _remote.clear();
 }
 
 }  // namespace Rabit

@@ -39,6 +39,7 @@ public:
     // ours are counted and logged, whichever side was there first.
     void RemoteAppeared(const RemoteEndpoint &endpoint);
     void RemoteGone(const WriterId &endpoint);
+    void ForgetRemote();
     // As in TransportSession.
     std::vector<RemoteEndpoint> RemoteOn(const std::string &topic) const;
     std::vector<std::string> RemoteTopics() const;

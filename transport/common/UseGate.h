@@ -1,13 +1,14 @@
-// Lets many threads use an object, and one thread change it while nobody uses it. Users never wait for a
-// change: as soon as one is wanted, they are turned away.
 #pragma once
 
-#include <condition_variable>
+#include <atomic>
 #include <mutex>
+#include <shared_mutex>
 
 namespace Rabit
 {
 
+// Lets many threads use an object, and one thread change it while nobody uses it. Users never wait for a
+// change: as soon as one is wanted, they are turned away.
 class UseGate
 {
 public:
@@ -15,21 +16,17 @@ public:
     class Use
     {
     public:
-        explicit Use(UseGate &gate) : _gate(gate), _allowed(gate.Enter()) {}
-        ~Use()
+        explicit Use(UseGate &gate) : _lock(gate._mutex, std::defer_lock)
         {
-            if (_allowed)
+            if (!gate._changing)
             {
-                _gate.Leave();
+                static_cast<void>(_lock.try_lock());
             }
         }
-        Use(const Use &) = delete;
-        Use &operator=(const Use &) = delete;
-        bool Allowed() const { return _allowed; }
+        bool Allowed() const { return _lock.owns_lock(); }
 
     private:
-        UseGate &_gate;
-        const bool _allowed;
+        std::shared_lock<std::shared_mutex> _lock;
     };
 
     // Its constructor waits for the current users. While it lives, the object has no user. Only one at a
@@ -39,14 +36,13 @@ public:
     public:
         explicit Change(UseGate &gate) : _gate(gate)
         {
-            std::unique_lock lock(_gate._mutex);
             _gate._changing = true;
-            _gate._event.wait(lock, [this] { return _gate._users == 0; });
+            _gate._mutex.lock();
         }
         ~Change()
         {
-            const std::lock_guard lock(_gate._mutex);
             _gate._changing = false;
+            _gate._mutex.unlock();
         }
         Change(const Change &) = delete;
         Change &operator=(const Change &) = delete;
@@ -56,33 +52,8 @@ public:
     };
 
 private:
-    bool Enter()
-    {
-        const std::lock_guard lock(_mutex);
-        if (_changing)
-        {
-            return false;
-        }
-        ++_users;
-        return true;
-    }
-    void Leave()
-    {
-        bool last = false;
-        {
-            const std::lock_guard lock(_mutex);
-            last = --_users == 0 && _changing;
-        }
-        if (last)
-        {
-            _event.notify_all();
-        }
-    }
-
-    std::mutex _mutex;
-    std::condition_variable _event;
-    int _users = 0;          // guarded by _mutex
-    bool _changing = false;  // guarded by _mutex
+    std::shared_mutex _mutex;
+    std::atomic<bool> _changing{false};  // a change lasts, or waits for users
 };
 
 }  // namespace Rabit

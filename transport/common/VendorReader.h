@@ -10,7 +10,6 @@
 #include "common/HandlerGate.h"
 #include "common/InstanceTable.h"
 #include "common/PeerSessions.h"
-#include "common/TopicRegistry.h"
 
 namespace Rabit
 {
@@ -26,7 +25,6 @@ protected:
     VendorReader(std::shared_ptr<Core> core, const TopicDescription &topic, SampleHandler handler)
         : _core(std::move(core)),
           _topic(topic),
-          _use(_core->Topics(), topic),
           _gate(_core->Log(), "the reader of " + topic.Name),
           _handler(std::move(handler))
     {
@@ -106,7 +104,6 @@ protected:
 
     const std::shared_ptr<Core> _core;
     const TopicDescription _topic;
-    const TopicRegistry::Use _use;
     HandlerGate _gate;
 
 private:

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "common/HeldDatagrams.h"
-#include "common/TopicRegistry.h"
 
 namespace Rabit
 {
@@ -49,7 +48,7 @@ protected:
     static constexpr std::size_t HeaderSize = 4;
 
     VendorWriter(std::shared_ptr<Core> core, const TopicDescription &topic, const TopicQos &qos)
-        : _core(std::move(core)), _topic(topic), _qos(qos), _use(_core->Topics(), topic)
+        : _core(std::move(core)), _topic(topic), _qos(qos)
     {
     }
 
@@ -93,7 +92,6 @@ protected:
     const TopicQos _qos;
 
 private:
-    const TopicRegistry::Use _use;
     HeldDatagrams _held;
 };
 

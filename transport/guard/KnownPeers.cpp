@@ -18,8 +18,6 @@ constexpr std::size_t MostReaders = 4096;
 constexpr std::chrono::seconds Forgotten{60};
 // While there is room, peers are remembered for longer: a returning peer is heard at once.
 constexpr std::chrono::minutes LongSilence{5};
-// Number of identical contradicting copies in a row before a changed announcement is accepted.
-constexpr int OftenEnough = 3;
 // Bounds of the announcement period of a participant, whatever was measured: forged repeats would shorten it,
 // and an outage would lengthen it.
 constexpr std::chrono::milliseconds ShortestPeriod{1000};
@@ -52,18 +50,18 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
     {
         Peer &known = found->second;
         const auto since = std::chrono::duration_cast<std::chrono::milliseconds>(now - known.Placed);
-        if (IsKnown(known.Place, digest))
+        if (known.Place.IsAccepted(digest))
         {
             known.Period = std::clamp(std::max(since, known.Period / 2), ShortestPeriod, LongestPeriod);
         }
         else
         {
-            const bool repeated = IsRepeated(known.Place, digest);
+            const bool repeated = known.Place.IsRepeated(digest);
             if (now - known.Heard < Forgotten && (!repeated || since < 2 * known.Period))
             {
                 return false;
             }
-            known.Place = Word{digest};
+            known.Place = Claim(digest);
             known.HasMoved = true;
             known.IsNewThere = true;
         }
@@ -80,7 +78,7 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
         return false;
     }
     Peer &added = _peers[peer];
-    added.Place = Word{digest};
+    added.Place = Claim(digest);
     added.Placed = now;
     added.Period = ShortestPeriod;
     added.Heard = now;
@@ -109,37 +107,6 @@ bool KnownPeers::Believes(const GuidPrefix &peer, const HostAddress &from, const
 {
     const auto found = _peers.find(peer);
     return found == _peers.end() || found->second.Speaks.Believes(from, saying);
-}
-
-bool KnownPeers::IsKnown(Word &word, std::uint64_t digest)
-{
-    if (word.Digest != digest)
-    {
-        return false;
-    }
-    word.Times = 0;
-    return true;
-}
-
-bool KnownPeers::IsRepeated(Word &word, std::uint64_t digest)
-{
-    word.Times = word.Other == digest ? word.Times + 1 : 1;
-    word.Other = digest;
-    return word.Times >= OftenEnough;
-}
-
-bool KnownPeers::Agrees(Word &word, std::uint64_t digest)
-{
-    if (IsKnown(word, digest))
-    {
-        return true;
-    }
-    const bool repeated = IsRepeated(word, digest);
-    if (repeated)
-    {
-        word = Word{digest};
-    }
-    return repeated;
 }
 
 std::int64_t KnownPeers::AnnouncementOf(const GuidPrefix &peer, std::int64_t number)
@@ -232,7 +199,7 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
     const auto known = writers.find(endpoint);
     if (known != writers.end())
     {
-        const bool agrees = Agrees(known->second.Endpoint, digest);
+        const bool agrees = known->second.Endpoint.Accepts(digest);
         if (agrees)
         {
             known->second.IsBestEffort = isBestEffort;
@@ -250,7 +217,7 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
         writers.erase(std::min_element(writers.begin(), writers.end(), silentLonger));
     }
     Numbers &added = writers[endpoint];
-    added.Endpoint = Word{digest};
+    added.Endpoint = Claim(digest);
     added.IsBestEffort = isBestEffort;
     return true;
 }
@@ -264,8 +231,8 @@ bool KnownPeers::ReaderAnnounced(Peer &peer, EntityId reader, std::uint64_t dige
                                        [](const auto &a, const auto &b)
                                        { return a.second.Turn < b.second.Turn; }));
     }
-    Reader &announced = readers.try_emplace(reader, Reader{Word{digest}}).first->second;
-    const bool agrees = Agrees(announced.Endpoint, digest);
+    Reader &announced = readers.try_emplace(reader, Reader{Claim(digest)}).first->second;
+    const bool agrees = announced.Endpoint.Accepts(digest);
     announced.Turn = agrees ? ++peer.Turn : announced.Turn;
     return agrees;
 }

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "guard/Claim.h"
 #include "guard/PeerVoice.h"
 #include "guard/RtpsMessage.h"
 #include "guard/SampleNumbers.h"
@@ -81,16 +82,9 @@ public:
 private:
     static constexpr std::size_t FewestToSweep = 16;
 
-    // An accepted claim, and the last contradicting one: how many times in a row it came.
-    struct Word
-    {
-        std::uint64_t Digest = 0;
-        std::uint64_t Other = 0;
-        int Times = 0;
-    };
     struct Numbers
     {
-        Word Endpoint;
+        Claim<std::uint64_t> Endpoint;
         std::int64_t Highest = 0;  // 0: no number was heard yet
         TimePoint Said{};          // when a number was last believed, the highest or not
         // Its rate: number of advances per second, and in the current second. The width of the advances does
@@ -108,12 +102,12 @@ private:
     };
     struct Reader
     {
-        Word Endpoint;
+        Claim<std::uint64_t> Endpoint;
         std::uint64_t Turn = 0;  // of its last accepted announcement; rises with each of this peer
     };
     struct Peer
     {
-        Word Place;
+        Claim<std::uint64_t> Place;
         PeerVoice Speaks;
         bool ListensToGroup = false;
         bool IsNewThere = true;              // since IsAt
@@ -131,11 +125,6 @@ private:
 
     bool MakeRoom(TimePoint now);
     void ForgetSilent(TimePoint now);
-    // IsKnown: `digest` is the accepted claim. IsRepeated: a contradicting one came often enough.
-    static bool IsKnown(Word &word, std::uint64_t digest);
-    static bool IsRepeated(Word &word, std::uint64_t digest);
-    // Both; a claim that came often enough is accepted from then on.
-    static bool Agrees(Word &word, std::uint64_t digest);
     static bool IsPlausible(Numbers &numbers, std::int64_t number, TimePoint now);
     static void Move(Numbers &numbers, std::int64_t number, TimePoint now);
 

@@ -8,7 +8,6 @@ namespace Rabit::Rtps
 namespace
 {
 
-constexpr int OftenEnough = 3;
 // Subjects of claims: each endpoint, and a few more. If there are too many, an arbitrary one is forgotten.
 constexpr std::size_t MostFromElsewhere = 1024;
 constexpr std::size_t MostOthers = 4;
@@ -73,11 +72,7 @@ bool PeerVoice::Believes(const HostAddress &from, const Saying &saying)
     {
         ForgetOne();
     }
-    Repeated &repeated = _fromElsewhere[saying.About];
-    repeated.Times = repeated.Content == saying.Content ? repeated.Times + 1 : 1;
-    repeated.Content = saying.Content;
-    repeated.Times = std::min(repeated.Times, OftenEnough);
-    return repeated.Times >= OftenEnough;
+    return _fromElsewhere[saying.About].IsRepeated(saying.Content);
 }
 
 }  // namespace Rabit::Rtps

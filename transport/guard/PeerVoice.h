@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "guard/Claim.h"
 #include "guard/RtpsMessage.h"
 
 namespace Rabit::Rtps
@@ -41,18 +42,12 @@ public:
     bool Believes(const HostAddress &from, const Saying &saying);
 
 private:
-    struct Repeated
-    {
-        std::uint64_t Content = 0;
-        int Times = 0;
-    };
-
     void ForgetOne();
 
     std::vector<HostAddress> _hosts;
     bool _heardThere = false;          // from one of the hosts
     std::vector<HostAddress> _others;  // the sources of its announcements, if not a host of them
-    std::map<std::uint64_t, Repeated> _fromElsewhere;
+    std::map<std::uint64_t, Claim<std::uint64_t>> _fromElsewhere;  // the content claimed of each subject
     std::uint64_t _chance = 0;
 };
 

@@ -15,13 +15,13 @@
 #include <utility>
 #include <vector>
 
+#include "common/RecentGoodbyes.h"
 #include "guard/AnnouncementReplies.h"
 #include "guard/AuthenticationThread.h"
 #include "guard/DeliveryCheck.h"
 #include "guard/DiscoveryFragments.h"
 #include "guard/KnownPeers.h"
 #include "guard/PeerObserver.h"
-#include "guard/RecentGoodbyes.h"
 #include "guard/RtpsMessage.h"
 #include "guard/SentFragments.h"
 

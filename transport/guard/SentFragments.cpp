@@ -5,14 +5,6 @@
 namespace Rabit::Rtps
 {
 
-namespace
-{
-
-// More than a history keeps of samples that are large enough for fragments.
-constexpr std::size_t MostSamples = 4096;
-
-}  // namespace
-
 void SentFragments::Sent(std::span<const std::uint8_t> datagram)
 {
     // It is our own and therefore sound. Beside fragments a datagram has only a time and a destination, so
@@ -39,21 +31,13 @@ void SentFragments::Sent(RtpsReader fragment)
     {
         return;
     }
-    if (_fragments.insert_or_assign({writer, sequence}, (whole + size - 1) / size).second)
-    {
-        _order.emplace_back(writer, sequence);
-    }
-    if (_order.size() > MostSamples)
-    {
-        _fragments.erase(_order.front());
-        _order.pop_front();
-    }
+    _fragments.Put({writer, sequence}, (whole + size - 1) / size);
 }
 
 bool SentFragments::Has(EntityId writer, std::int64_t sequence, std::uint32_t fragment) const
 {
-    const auto found = _fragments.find({writer, sequence});
-    return found != _fragments.end() && fragment >= 1 && fragment <= found->second;
+    const std::uint32_t *const fragments = _fragments.Find({writer, sequence});
+    return fragments != nullptr && fragment >= 1 && fragment <= *fragments;
 }
 
 }  // namespace Rabit::Rtps

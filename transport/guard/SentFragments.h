@@ -3,18 +3,17 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
-#include <map>
 #include <span>
 #include <utility>
 
+#include "common/RecentMap.h"
 #include "guard/RtpsMessage.h"
 
 namespace Rabit::Rtps
 {
 
 // If a peer requests a fragment beyond the last one, the vendor would read past the end of the sample.
-// Bounded: keeps the samples begun last. Not thread-safe.
+// Bounded: keeps the samples sent last. Not thread-safe.
 class SentFragments
 {
 public:
@@ -23,15 +22,17 @@ public:
     // True if a sample was sent that has a fragment of this number, and all before it.
     bool Has(EntityId writer, std::int64_t sequence, std::uint32_t fragment) const;
 
-    std::size_t Size() const { return _fragments.size(); }
+    std::size_t Size() const { return _fragments.Size(); }
 
 private:
     void Sent(RtpsReader fragment);
 
     using Sample = std::pair<EntityId, std::int64_t>;
 
-    std::map<Sample, std::uint32_t> _fragments;
-    std::deque<Sample> _order;
+    // More than a history keeps of samples that are large enough for fragments.
+    static constexpr std::size_t MostSamples = 4096;
+
+    RecentMap<Sample, std::uint32_t> _fragments{MostSamples};
 };
 
 }  // namespace Rabit::Rtps

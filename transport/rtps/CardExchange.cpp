@@ -1,5 +1,7 @@
 #include "rtps/CardExchange.h"
 
+#include <rabit/base/Assert.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -489,6 +491,7 @@ CardExchange::Outgoing CardExchange::TakePart(TimePoint now)
         std::min_element(_parts.begin(), _parts.end(),
                          [](const OwnPart &a, const OwnPart &b)
                          { return a.IsWanted != b.IsWanted ? a.IsWanted : a.NotBefore < b.NotBefore; });
+    RABIT_ASSERT(longest != _parts.end() && longest->IsWanted);
     const auto number = static_cast<std::size_t>(longest - _parts.begin());
     OwnPart &part = *longest;
     CardMessage message{.From = _self,

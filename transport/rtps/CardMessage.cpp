@@ -1,5 +1,7 @@
 #include "rtps/CardMessage.h"
 
+#include <rabit/base/Assert.h>
+
 #include <algorithm>
 #include <array>
 
@@ -89,6 +91,8 @@ std::optional<CardMessage> ReadCardMessage(std::span<const std::uint8_t> datagra
 
 std::vector<std::uint8_t> WriteCardMessage(const CardMessage &message)
 {
+    RABIT_ASSERT(message.Requests.size() <= MostCardRequests && message.Summary.Size <= LargestCard);
+    RABIT_ASSERT(!message.HasPart || message.Bytes.size() == SizeOfPart(message.Summary, message.Part));
     const std::size_t unpadded = RequestsAt + RequestSize * message.Requests.size() +
                                  (message.HasPart ? AnswersSize + message.Bytes.size() : 0);
     const std::size_t length = (unpadded + Alignment - 1) / Alignment * Alignment;

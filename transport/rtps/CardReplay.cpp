@@ -6,6 +6,7 @@
 
 #include "common/RtpsReader.h"
 #include "common/RtpsWriter.h"
+#include "rtps/Earliest.h"
 
 namespace Rabit::Rtps
 {
@@ -14,69 +15,37 @@ namespace
 {
 
 constexpr std::array<EntityId, 2> EndpointWriters{PublicationsWriter, SubscriptionsWriter};
-// RTPS 2.3, 9.6.3
-constexpr std::uint16_t Sentinel = 0x0001;
-constexpr std::uint16_t LeaseDuration = 0x0002;
-constexpr std::uint16_t EntityName = 0x0062;
-
-// Offset of the payload of an announcement; 0: it has none.
-std::size_t PayloadAt(std::span<const std::uint8_t> announcement)
-{
-    const auto said = ReadAnnouncement(announcement);
-    return said && said->Payload.size() > 4 ? announcement.size() - said->Payload.size() : 0;
-}
-
-bool IsLittleEndianList(std::span<const std::uint8_t> announcement)
-{
-    constexpr std::uint8_t littleEndianList = 3;
-    return announcement[PayloadAt(announcement) + 1] == littleEndianList;
-}
-
-// Calls visit(id, offset of the value in the submessage, length) for each parameter of an announcement's
-// list. Stops at the first unsound one.
-template <typename Visit>
-void VisitParameters(std::span<const std::uint8_t> announcement, const Visit &visit)
-{
-    const std::size_t payloadAt = PayloadAt(announcement);
-    if (payloadAt == 0)
-    {
-        return;
-    }
-    RtpsReader list(announcement.subspan(payloadAt + 4), IsLittleEndianList(announcement));
-    while (list.IsGood() && list.Left() > 0)
-    {
-        const std::uint16_t id = list.U16();
-        const std::uint16_t length = list.U16();
-        const std::size_t at = payloadAt + 4 + list.Position();
-        list.Skip(length);
-        if (!list.IsGood() || id == Sentinel)
-        {
-            return;
-        }
-        visit(id, at, length);
-    }
-}
 
 // Seconds and their 2^-32 fractions, in the byte order of the list (9.3.2: a duration).
-void PutLease(std::vector<std::uint8_t> &announcement, std::chrono::milliseconds lease)
+void PutLease(std::span<std::uint8_t> payload, std::chrono::milliseconds lease)
 {
-    std::size_t found = 0;
-    VisitParameters(announcement, [&](std::uint16_t id, std::size_t at, std::size_t length)
-                    { found = id == LeaseDuration && length == 8 ? at : found; });
-    if (found == 0)
-    {
-        return;
-    }
-    const bool littleEndian = IsLittleEndianList(announcement);
-    const auto seconds = static_cast<std::uint32_t>(lease.count() / 1000);
-    const auto fraction =
-        static_cast<std::uint32_t>((static_cast<std::uint64_t>(lease.count() % 1000) << 32) / 1000);
-    for (std::size_t i = 0; i < 4; ++i)
-    {
-        const std::size_t shift = 8 * (littleEndian ? i : 3 - i);
-        announcement[found + i] = static_cast<std::uint8_t>(seconds >> shift);
-        announcement[found + 4 + i] = static_cast<std::uint8_t>(fraction >> shift);
-    }
+    const auto milliseconds = static_cast<std::uint64_t>(lease.count());
+    VisitParameters(payload,
+                    [&](const ListParameter &parameter)
+                    {
+                        if (parameter.Id == Parameters::LeaseDuration && parameter.Value.size() == 8)
+                        {
+                            const auto value = payload.subspan(EncapsulationSize + parameter.At + 4);
+                            Write(value.first(4), milliseconds / 1000, IsLittleEndianList(payload));
+                            Write(value.subspan(4, 4), (milliseconds % 1000 << 32) / 1000,
+                                  IsLittleEndianList(payload));
+                        }
+                    });
+}
+
+std::string NameIn(std::span<const std::uint8_t> payload)
+{
+    std::string name;
+    VisitParameters(payload,
+                    [&name](const ListParameter &parameter)
+                    {
+                        if (parameter.Id == Parameters::EntityName && parameter.Value.size() > 4)
+                        {
+                            const auto text = parameter.Value.subspan(4);  // behind its length
+                            name.assign(text.begin(), std::find(text.begin(), text.end(), 0));
+                        }
+                    });
+    return name;
 }
 
 }  // namespace
@@ -107,8 +76,10 @@ bool CardReplay::Put(const GuidPrefix &peer, std::span<const std::uint8_t> card,
     {
         return false;
     }
-    PutLease(participant, std::chrono::duration_cast<std::chrono::milliseconds>(_memory));
+    const auto payload = ReadAnnouncement(participant)->Payload;
+    PutLease(payload, std::chrono::duration_cast<std::chrono::milliseconds>(_memory));
     Peer &known = _peers[peer];
+    known.Name = NameIn(payload);
     known.Header.assign(card.begin(), card.begin() + RtpsHeaderSize);
     known.Participant = std::move(participant);
     for (const EntityId writer : EndpointWriters)
@@ -145,21 +116,7 @@ void CardReplay::End(const GuidPrefix &peer)
 std::string CardReplay::NameOf(const GuidPrefix &peer) const
 {
     const auto found = _peers.find(peer);
-    std::string name;
-    if (found != _peers.end())
-    {
-        const std::span<const std::uint8_t> announcement = found->second.Participant;
-        VisitParameters(announcement,
-                        [&](std::uint16_t id, std::size_t at, std::size_t length)
-                        {
-                            if (id == EntityName && length > 4)
-                            {
-                                const auto text = announcement.subspan(at + 4, length - 4);
-                                name.assign(text.begin(), std::find(text.begin(), text.end(), 0));
-                            }
-                        });
-    }
-    return name;
+    return found == _peers.end() ? "" : found->second.Name;
 }
 
 std::vector<GuidPrefix> CardReplay::Peers() const
@@ -239,17 +196,10 @@ void CardReplay::Said(const EndpointSubmessage &said, TimePoint now)
 
 std::optional<CardReplay::TimePoint> CardReplay::Due() const
 {
-    std::optional<TimePoint> due;
-    const auto consider = [&due](const std::optional<TimePoint> &time)
-    { due = time ? std::min(due.value_or(*time), *time) : due; };
-    if (!_ends.empty())
-    {
-        consider(TimePoint{});
-    }
+    std::optional<TimePoint> due = _ends.empty() ? std::nullopt : std::optional(TimePoint{});
     for (const auto &[name, peer] : _peers)
     {
-        consider(peer.AnswerAt);
-        consider(peer.Retry.Due());
+        due = Earliest({due, peer.AnswerAt, peer.Retry.Due()});
     }
     return due;
 }
@@ -260,7 +210,7 @@ std::vector<CardReplay::Message> CardReplay::TakeDue(TimePoint now, const OwnCar
     for (auto &[name, peer] : _peers)
     {
         const bool retries = peer.Retry.IsDue(now);
-        const bool answers = peer.AnswerAt && *peer.AnswerAt <= now;
+        const bool answers = IsBy(peer.AnswerAt, now);
         if (retries)
         {
             peer.Retry.Done(now);

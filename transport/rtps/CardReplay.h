@@ -91,8 +91,9 @@ private:
     struct Peer
     {
         std::vector<std::uint8_t> Header;
-        std::vector<std::uint8_t> Participant;
-        std::int64_t Announced = 0;  // number of its announcement, counted from 1
+        std::vector<std::uint8_t> Participant;  // its announcement
+        std::string Name;                       // in it
+        std::int64_t Announced = 0;             // number of its announcement, counted from 1
         std::map<EntityId, Stream> Streams;
         bool IsKnown = false;  // the implementation has answered since the last retry
         Backoff Retry{{FirstRetry, LongestRetry, 2.0, MostRetries}};

@@ -71,21 +71,15 @@ bool Read(const Submessage &submessage, EndpointSubmessage &read)
 // The GUID in a parameter list that names the subject; empty if there is none.
 std::span<const std::uint8_t> GuidIn(std::span<const std::uint8_t> payload)
 {
-    constexpr std::uint8_t littleEndianList = 3;
-    if (payload.size() < EncapsulationSize)
-    {
-        return {};
-    }
-    RtpsReader list(payload.subspan(EncapsulationSize), payload[1] == littleEndianList);
-    while (const auto parameter = TakeParameter(list))
-    {
-        const bool isGuid = parameter->Id == Parameters::EndpointGuid || parameter->Id == Parameters::KeyHash;
-        if (isGuid && parameter->Value.size() == 16)
-        {
-            return parameter->Value;
-        }
-    }
-    return {};
+    std::span<const std::uint8_t> guid;
+    VisitParameters(payload,
+                    [&guid](const ListParameter &parameter)
+                    {
+                        const bool isGuid =
+                            parameter.Id == Parameters::EndpointGuid || parameter.Id == Parameters::KeyHash;
+                        guid = isGuid && parameter.Value.size() == 16 ? parameter.Value : guid;
+                    });
+    return guid;
 }
 
 // Reader and writer.

@@ -72,21 +72,7 @@ bool Meeting::IsThere(const GuidPrefix &peer, const HostAddress &from)
     {
         std::erase_if(_places, [this](const auto &entry) { return !_replay.Has(entry.first); });
     }
-    const auto [found, isNew] = _places.try_emplace(peer, Place{.From = from});
-    Place &place = found->second;
-    if (place.From == from)
-    {
-        place.Times = 0;
-        return true;
-    }
-    place.Times = place.Other == from ? place.Times + 1 : 1;
-    place.Other = from;
-    if (place.Times >= OftenEnough)
-    {
-        place = {.From = from};
-        return true;
-    }
-    return false;
+    return _places.try_emplace(peer, from).first->second.Accepts(from);
 }
 
 bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt,
@@ -186,7 +172,7 @@ std::vector<Meeting::Local> Meeting::TakeLocal(TimePoint now)
     for (CardReplay::Message &message : _replay.TakeDue(now, _own))
     {
         const auto place = _places.find(message.From);
-        taken.push_back({.From = place == _places.end() ? UnknownHost : place->second.From,
+        taken.push_back({.From = place == _places.end() ? UnknownHost : place->second.Accepted(),
                          .Bytes = std::move(message.Bytes)});
     }
     return taken;
@@ -210,17 +196,7 @@ void Meeting::End(const GuidPrefix &peer)
 {
     _replay.End(peer);
     Lost(peer);
-    constexpr std::size_t most = 64;
-    _ended.push_back(peer);
-    if (_ended.size() > most)
-    {
-        _ended.pop_front();
-    }
-}
-
-bool Meeting::WasEnded(const GuidPrefix &peer) const
-{
-    return std::find(_ended.begin(), _ended.end(), peer) != _ended.end();
+    _ended.Put(peer, {});
 }
 
 }  // namespace Rabit::Rtps

@@ -2,15 +2,17 @@
 
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "common/RecentGoodbyes.h"
+#include "common/RecentMap.h"
+#include "guard/Claim.h"
 #include "guard/DiscoveryFragments.h"
-#include "guard/RecentGoodbyes.h"
 #include "rtps/CardExchange.h"
 #include "rtps/CardReplay.h"
 #include "rtps/OwnCard.h"
@@ -43,9 +45,6 @@ public:
 
     // Own announcements within this time are packed together.
     static constexpr std::chrono::milliseconds Hold{10};
-    // The source address of a participant's card messages may change: another address is accepted after this
-    // many messages in a row from it.
-    static constexpr int OftenEnough = 3;
     // After this time, programs without a card that do not announce themselves any more are forgotten.
     static constexpr std::chrono::minutes ProgramsForgotten{5};
     static constexpr std::size_t MostRemembered = 1024;
@@ -100,17 +99,9 @@ public:
     Duration EndAfter() const { return 5 * _settings.Period / 2; }
     void End(const GuidPrefix &peer);
     // True if it was ended here, and did not say goodbye.
-    bool WasEnded(const GuidPrefix &peer) const;
+    bool WasEnded(const GuidPrefix &peer) const { return _ended.Find(peer) != nullptr; }
 
 private:
-    // Source address of a participant's card messages.
-    struct Place
-    {
-        HostAddress From{};
-        HostAddress Other{};
-        int Times = 0;
-    };
-
     bool IsThere(const GuidPrefix &peer, const HostAddress &from);
     bool IsForPrograms(const GuidPrefix &to, TimePoint now);
     void Say(const EndpointSubmessage &said, std::span<const std::uint8_t> header, TimePoint now);
@@ -123,11 +114,11 @@ private:
     CardReplay _replay;
     DiscoveryFragments _fragments;  // of the own implementation's announcements
     std::optional<TimePoint> _packAt;
-    std::map<GuidPrefix, Place> _places;
-    std::map<GuidPrefix, TimePoint> _programs;  // without a card: when each was last announced
+    std::map<GuidPrefix, Claim<HostAddress>> _places;  // source addresses of their card messages
+    std::map<GuidPrefix, TimePoint> _programs;         // without a card: when each was last announced
     std::map<GuidPrefix, std::string> _superseded;
     RecentGoodbyes _goodbyes;
-    std::deque<GuidPrefix> _ended;  // the last that were ended here
+    RecentMap<GuidPrefix, std::monostate> _ended{64};
 };
 
 }  // namespace Rabit::Rtps

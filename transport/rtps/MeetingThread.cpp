@@ -14,42 +14,27 @@ void MeetingThread::Start(Calls calls)
 {
     _calls = std::move(calls);
     _turns->SetExchange(*this);
-    _thread = std::thread([this] { Run(); });
+    DueThread::Start();
 }
 
 void MeetingThread::Stop()
 {
     _turns->RemoveExchange(*this);
-    {
-        const std::lock_guard lock(_mutex);
-        _stop = true;
-    }
-    _changed.notify_one();
-    if (_thread.joinable())
-    {
-        _thread.join();
-    }
+    DueThread::Stop();
 }
 
-// Does the work, and wakes the thread if something is now due earlier than the thread's wake-up.
-template <typename Work>
-auto MeetingThread::With(const Work &work)
+// Does the task, and wakes the thread if something is now due earlier than it would wake by itself.
+template <typename Task>
+auto MeetingThread::With(const Task &task)
 {
     struct Waker
     {
         MeetingThread &Self;
-        ~Waker()
-        {
-            const auto due = Self.Due();
-            if (Self._waits && due && (!Self._waitsUntil || *due < *Self._waitsUntil))
-            {
-                Self._changed.notify_one();
-            }
-        }
+        ~Waker() { Self.WakeIfEarlier(); }
     };
     const std::lock_guard lock(_mutex);
     const Waker waker{*this};
-    return work(Clock::now());
+    return task(Clock::now());
 }
 
 bool MeetingThread::Sending(std::span<const std::uint8_t> datagram)
@@ -100,7 +85,7 @@ std::size_t MeetingThread::NextBytes()
     const std::size_t bytes = _meeting.NetworkBytes(Clock::now());
     if (bytes == 0)
     {
-        _changed.notify_one();  // to wait for the next one
+        WakeIfEarlier();  // to wait for the next one
     }
     return bytes;
 }
@@ -124,54 +109,37 @@ std::chrono::nanoseconds MeetingThread::QueueingDelay() const
     return _meeting.QueueingDelay(Clock::now());
 }
 
-// When the thread has work. Requires _mutex. A message that waits for its turn is no work of the thread.
-std::optional<MeetingThread::Clock::time_point> MeetingThread::Due() const
+// A message that waits for its turn is no work of the thread.
+std::optional<MeetingThread::Clock::time_point> MeetingThread::Due()
 {
     const bool waitsForTurn = _turns->IsScheduled() && _turns->IsDue();
-    return Earliest({_meeting.LocalDue(), waitsForTurn ? std::nullopt : _meeting.NetworkDue()});
+    return Earliest({_meeting.LocalDue(), waitsForTurn ? std::nullopt : _meeting.NetworkDue(),
+                     _meeting.Endable().empty() ? std::nullopt : std::optional(_lookAt)});
 }
 
-void MeetingThread::Run()
+void MeetingThread::Work(std::unique_lock<std::mutex> &lock)
 {
-    auto lookAt = Clock::now();
-    std::unique_lock lock(_mutex);
-    while (!_stop)
+    const auto now = Clock::now();
+    if (!_meeting.Endable().empty() && now >= _lookAt)
     {
-        const auto now = Clock::now();
-        const bool anyEndable = !_meeting.Endable().empty();
-        if (anyEndable && now >= lookAt)
-        {
-            lookAt = now + LookForSilent;
-            lock.unlock();
-            EndSilent();
-            lock.lock();
-            continue;
-        }
-        _waitsUntil = Due();
-        if (anyEndable)
-        {
-            _waitsUntil = std::min(_waitsUntil.value_or(lookAt), lookAt);
-        }
-        if (!_waitsUntil || *_waitsUntil > now)
-        {
-            _waits = true;
-            _waitsUntil ? static_cast<void>(_changed.wait_until(lock, *_waitsUntil)) : _changed.wait(lock);
-            _waits = false;
-            continue;
-        }
-        std::vector<Meeting::Local> messages = _meeting.TakeLocal(now);
-        const bool isForNetwork = IsBy(_meeting.NetworkDue(), now);
+        _lookAt = now + LookForSilent;
         lock.unlock();
-        for (Meeting::Local &local : messages)
-        {
-            _calls.Deliver(local.From, local.Bytes);
-        }
-        if (isForNetwork)
-        {
-            _turns->IsScheduled() ? _turns->Due() : SendNext();
-        }
+        EndSilent();
         lock.lock();
+        return;
     }
+    std::vector<Meeting::Local> messages = _meeting.TakeLocal(now);
+    const bool isForNetwork = IsBy(_meeting.NetworkDue(), now);
+    lock.unlock();
+    for (Meeting::Local &local : messages)
+    {
+        _calls.Deliver(local.From, local.Bytes);
+    }
+    if (isForNetwork)
+    {
+        _turns->IsScheduled() ? _turns->Due() : SendNext();
+    }
+    lock.lock();
 }
 
 void MeetingThread::EndSilent()

@@ -2,15 +2,14 @@
 
 #include <rabit/transport/DiscoveryTurns.h>
 
-#include <condition_variable>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
-#include <thread>
 #include <utility>
 
+#include "common/DueThread.h"
 #include "guard/PeerObserver.h"
 #include "rtps/Meeting.h"
 
@@ -19,11 +18,9 @@ namespace Rabit::Rtps
 
 // Runs a Meeting on a thread of its own, which does due work. Messages to the network wait for their turn
 // (DiscoveryTurns.h) where the session's holder gives turns. Thread-safe.
-class MeetingThread final : public PeerObserver, private DiscoveryTurns::Exchange
+class MeetingThread final : public DueThread, public PeerObserver, private DiscoveryTurns::Exchange
 {
 public:
-    using Clock = std::chrono::steady_clock;
-
     // Called without a lock of this object, on that thread; Send in a turn also on the holder's thread.
     struct Calls
     {
@@ -66,21 +63,16 @@ private:
     void SendNext() override;
     std::chrono::nanoseconds QueueingDelay() const override;
 
-    template <typename Work>
-    auto With(const Work &work);
-    std::optional<Clock::time_point> Due() const;
-    void Run();
+    template <typename Task>
+    auto With(const Task &task);
+    std::optional<Clock::time_point> Due() override;
+    void Work(std::unique_lock<std::mutex> &lock) override;
     void EndSilent();
 
-    mutable std::mutex _mutex;
-    std::condition_variable _changed;
-    Meeting _meeting;                              // guarded by _mutex
-    std::optional<Clock::time_point> _waitsUntil;  // guarded by _mutex
-    bool _waits = false;                           // guarded by _mutex
-    bool _stop = false;                            // guarded by _mutex
+    Meeting _meeting;             // guarded by _mutex
+    Clock::time_point _lookAt{};  // for silent participants, if any is endable; guarded by _mutex
     Calls _calls;
     const std::shared_ptr<DiscoveryTurns> _turns;
-    std::thread _thread;
 };
 
 }  // namespace Rabit::Rtps

@@ -1,5 +1,6 @@
 // Tests of the parts that all backends share.
 #include <gmock/gmock.h>
+#include <rabit/base/Assert.h>
 
 #include <atomic>
 #include <chrono>
@@ -276,6 +277,20 @@ TEST(Settings, PeersAreParsed)
         EXPECT_THROW(ParsePeer(bad), TransportError) << bad;
     }
 }
+
+#ifdef NDEBUG
+TEST(Assertion, IsNotEvaluatedInAReleaseBuild)
+{
+    int evaluated = 0;
+    RABIT_ASSERT(++evaluated < 0);
+    EXPECT_EQ(evaluated, 0);
+}
+#else
+TEST(AssertionDeathTest, EndsTheProgramAndNamesTheInvariant)
+{
+    EXPECT_DEATH(RABIT_ASSERT(1 + 1 == 3), "CommonTest.cpp:.*1 \\+ 1 == 3");
+}
+#endif
 
 TEST(UseGate, AUserIsTurnedAwayWhileAChangeLasts)
 {

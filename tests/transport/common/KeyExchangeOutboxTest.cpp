@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace
@@ -64,6 +65,10 @@ protected:
             }
         }
         return Milliseconds::max();
+    }
+
+    explicit KeyExchangeOutboxTest(KeyExchangeOutbox outbox = KeyExchangeOutbox()) : Outbox(std::move(outbox))
+    {
     }
 
     const KeyExchangeOutbox::TimePoint Start{1000s};
@@ -439,6 +444,68 @@ TEST_F(KeyExchangeOutboxTest, ASetRateBoundsAll)
     Put(1, Step::Keys, 2, 0ms, 500 - KeyExchangeOutbox::Headers);
     EXPECT_EQ(Take(0ms), (Routes{1}));
     EXPECT_EQ(Next(), 500ms);
+}
+
+class RepeatedFinalTest : public KeyExchangeOutboxTest
+{
+protected:
+    static constexpr Milliseconds Delay = KeyExchangeOutbox::FinalDelay;
+
+    RepeatedFinalTest() : KeyExchangeOutboxTest(KeyExchangeOutbox(true))
+    {
+        Put(1, Step::Final, 1, 0ms);
+        Take(0ms);
+    }
+};
+
+TEST_F(RepeatedFinalTest, APeerThatShowsItsCertificateAgainIsAnsweredAgainAfterADelay)
+{
+    Hear(1, Step::Reply, 1000ms);
+    EXPECT_EQ(Take(1000ms + Delay / 2), Routes{});
+    EXPECT_EQ(Take(1000ms + Delay), (Routes{1}));
+    EXPECT_EQ(Take(60s), Routes{});
+}
+
+TEST_F(RepeatedFinalTest, ItIsNotAnsweredWhileItShowsTheCertificate)
+{
+    Hear(1, Step::Reply, 1000ms);
+    Hear(1, Step::Reply, 1000ms + Delay / 2);
+    EXPECT_EQ(Take(1000ms + Delay), Routes{});
+    EXPECT_EQ(Take(1000ms + 2 * Delay), (Routes{1}));
+}
+
+TEST_F(RepeatedFinalTest, APeerThatWasNotAnsweredYetIsNotAnsweredHere)
+{
+    Hear(2, Step::Reply, 1000ms);
+    Hear(1, Step::Request, 1000ms);
+    EXPECT_EQ(Take(60s), Routes{});
+}
+
+TEST_F(RepeatedFinalTest, OfAHandshakeThatBeganAnewTheNewestIsRepeated)
+{
+    Put(1, Step::Final, 2, 20s);
+    EXPECT_EQ(Take(20s), (Routes{2}));
+    Put(1, Step::Final, 3, 40s);
+    Hear(1, Step::Reply, 40s);
+    EXPECT_EQ(Take(40s), (Routes{3}));
+    Hear(1, Step::Reply, 50s);
+    EXPECT_EQ(Take(60s), (Routes{3}));
+}
+
+TEST_F(RepeatedFinalTest, OtherMessagesAreNotRepeated)
+{
+    Put(1, Step::Request, 2, 20s);
+    EXPECT_EQ(Take(20s), (Routes{2}));
+    Hear(1, Step::Reply, 30s);
+    EXPECT_EQ(Take(60s), Routes{});
+}
+
+TEST_F(KeyExchangeOutboxTest, AVendorThatAnswersAgainByItselfIsNotHelped)
+{
+    Put(1, Step::Final, 1, 0ms);
+    Take(0ms);
+    Hear(1, Step::Reply, 1000ms);
+    EXPECT_EQ(Take(60s), Routes{});
 }
 
 TEST_F(KeyExchangeOutboxTest, MemoryIsBoundedWhateverIsSaid)

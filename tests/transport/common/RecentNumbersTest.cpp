@@ -1,13 +1,16 @@
-// Numbers of keys, of which those used last are remembered.
+// Entries, and numbers, of keys, of which those used last are remembered.
 #include "common/RecentNumbers.h"
 
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "common/RecentMap.h"
+
 namespace
 {
 
+using Rabit::RecentMap;
 using Numbers = Rabit::RecentNumbers<std::string>;
 
 TEST(RecentNumbers, AKeyKeepsItsNumber)
@@ -49,6 +52,39 @@ TEST(RecentNumbers, ANumberIsNeverGivenTwice)
     const auto again = numbers.Of("first");
     EXPECT_TRUE(again.second);
     EXPECT_GT(again.first, last);
+}
+
+TEST(RecentMap, ForgetsTheOldestEntry)
+{
+    RecentMap<int, char> map(2);
+    map.Put(1, 'a');
+    map.Put(2, 'b');
+    map.Put(3, 'c');
+    EXPECT_EQ(map.Size(), 2U);
+    EXPECT_EQ(map.Find(1), nullptr);
+    EXPECT_NE(map.Find(2), nullptr);
+}
+
+TEST(RecentMap, AnEntryThatIsPutAgainIsTheNewestAndHasTheNewValue)
+{
+    RecentMap<int, char> map(2);
+    map.Put(1, 'a');
+    map.Put(2, 'b');
+    map.Put(1, 'c');
+    map.Put(3, 'd');
+    EXPECT_EQ(map.Find(2), nullptr);
+    ASSERT_NE(map.Find(1), nullptr);
+    EXPECT_EQ(*map.Find(1), 'c');
+}
+
+TEST(RecentMap, AnErasedEntryIsGone)
+{
+    RecentMap<int, char> map(2);
+    map.Put(1, 'a');
+    map.Erase(1);
+    map.Erase(1);
+    EXPECT_EQ(map.Find(1), nullptr);
+    EXPECT_EQ(map.Size(), 0U);
 }
 
 }  // namespace

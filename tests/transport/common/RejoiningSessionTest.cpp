@@ -42,6 +42,7 @@ struct Script
     bool Duplicates = false;
     std::vector<PeerPlace> Places;
     PeerHandler OnPeer;
+    std::shared_ptr<TopicRegistry> Topics;
     std::function<void()> InOpen;
     std::atomic<bool> Blocks{false};  // a Write
     std::atomic<bool> IsWriting{false};
@@ -118,12 +119,6 @@ public:
     {
         return std::make_unique<ScriptedReader>(_script, topic.Name);
     }
-    TransportCounters Counters() const override
-    {
-        TransportCounters counters;
-        counters.SamplesLost = 5;
-        return counters;
-    }
     std::vector<PeerPlace> PeerPlaces() const override { return _script.Places; }
 
 private:
@@ -134,8 +129,8 @@ class ScriptedBackend final : public RejoiningBackend
 {
 public:
     explicit ScriptedBackend(Script &script) : _script(script) {}
-    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<DiscoveryTurns> /*turns*/) override
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings,
+                                         const SessionContext &context) override
     {
         EXPECT_FALSE(_script.IsOpen);
         if (_script.InOpen)
@@ -147,7 +142,9 @@ public:
             throw TransportError("no free port", "domain");
         }
         _script.Opened.push_back(settings);
-        _script.OnPeer = std::move(onPeer);
+        _script.OnPeer = context.OnPeer;
+        _script.Topics = context.Topics;
+        context.Log->SamplesLost(5);
         return std::make_unique<ScriptedSession>(_script);
     }
     void CheckConfig(const TransportSettings &) const override
@@ -352,6 +349,17 @@ TEST_F(RejoiningSessionTest, LosesEachPeerAsOftenAsItAppeared)
         EXPECT_EQ(event.What, PeerEvent::Kind::Lost);
         EXPECT_EQ(event.Node, "ground");
     }
+}
+
+TEST_F(RejoiningSessionTest, KnowsNoTopicOfOthersThatItHasNotFoundAnew)
+{
+    const auto session = Open();
+    _script.Topics->RemoteAppeared({.IsWriter = true, .Topic = "Pose", .Type = "Uav::Pose"});
+    EXPECT_THAT(session->RemoteTopics(), ElementsAre("Pose"));
+    EXPECT_EQ(session->RemoteEndpointsOn("Pose").size(), 1u);
+    _networks = {Wired, Radio};
+    Follow(*session);
+    EXPECT_THAT(session->RemoteTopics(), IsEmpty());
 }
 
 TEST_F(RejoiningSessionTest, CountersNeverFallAndAreReadWhileTheNetworkIsJoined)

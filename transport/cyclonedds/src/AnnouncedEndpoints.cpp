@@ -35,20 +35,20 @@ bool IsOfRabitNode(std::span<const std::uint8_t> userData)
 }
 
 // Changes the parameters in the announcement of a participant.
-bool LeaveOut(std::span<std::uint8_t> parameters)
+bool LeaveOut(std::span<std::uint8_t> payload)
 {
     std::span<std::uint8_t> set;
     bool isOfRabitNode = false;
-    RtpsReader list(parameters, true);
-    while (const auto parameter = TakeParameter(list))
-    {
-        if (parameter->Id == Parameters::BuiltinEndpointSet && parameter->Value.size() == 4)
-        {
-            set = parameters.subspan(list.Position() - 4, 4);
-        }
-        isOfRabitNode =
-            isOfRabitNode || (parameter->Id == Parameters::UserData && IsOfRabitNode(parameter->Value));
-    }
+    VisitParameters(payload,
+                    [&](const ListParameter &parameter)
+                    {
+                        if (parameter.Id == Parameters::BuiltinEndpointSet && parameter.Value.size() == 4)
+                        {
+                            set = payload.subspan(EncapsulationSize + parameter.At + 4, 4);
+                        }
+                        isOfRabitNode = isOfRabitNode || (parameter.Id == Parameters::UserData &&
+                                                          IsOfRabitNode(parameter.Value));
+                    });
     if (set.empty() || (Number(set) & Secure) != 0 || !isOfRabitNode)
     {
         return false;
@@ -67,15 +67,13 @@ bool LeaveOutIdleEndpoints(std::span<std::uint8_t> datagram)
     VisitSubmessages(datagram,
                      [&changed](const Submessage &submessage)
                      {
-                         constexpr std::uint8_t littleEndianList = 3;
                          const auto said = submessage.Kind == SubmessageKind::Data ? CheckDelivery(submessage)
                                                                                    : std::nullopt;
                          // A goodbye has a key alone.
                          if (said && said->Writer == ParticipantWriter && !said->HasKeyPayload &&
-                             said->Payload.size() >= EncapsulationSize &&
-                             said->Payload[1] == littleEndianList)
+                             said->Payload.size() >= EncapsulationSize && IsLittleEndianList(said->Payload))
                          {
-                             changed = LeaveOut(said->Payload.subspan(EncapsulationSize)) || changed;
+                             changed = LeaveOut(said->Payload) || changed;
                          }
                      });
     return changed;

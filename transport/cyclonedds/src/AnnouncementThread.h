@@ -1,17 +1,18 @@
 #pragma once
 
-#include <condition_variable>
 #include <functional>
 #include <mutex>
-#include <thread>
+#include <optional>
+#include <utility>
 
 #include "AnnouncementRounds.h"
+#include "common/DueThread.h"
 
 namespace Rabit::Cyclone
 {
 
 // A thread that announces the participant when AnnouncementRounds says so.
-class AnnouncementThread
+class AnnouncementThread final : public DueThread
 {
 public:
     // Both are called on the thread, and may take the vendor's locks.
@@ -22,27 +23,43 @@ public:
     };
 
     // `answerGap`, `hasCard`: see AnnouncementRounds.
-    AnnouncementThread(std::chrono::milliseconds answerGap, bool hasCard);
-    ~AnnouncementThread();  // no call is made afterwards
-    AnnouncementThread(const AnnouncementThread &) = delete;
-    AnnouncementThread &operator=(const AnnouncementThread &) = delete;
+    AnnouncementThread(std::chrono::milliseconds answerGap, bool hasCard)
+        : _rounds(answerGap, Clock::now(), hasCard)
+    {
+    }
+    ~AnnouncementThread() { Stop(); }  // no call is made afterwards
 
     // To be called once, when the participant exists.
-    void Start(Calls calls);
+    void Start(Calls calls)
+    {
+        _calls = std::move(calls);
+        DueThread::Start();
+    }
     // A peer has appeared. Any thread; also before Start.
-    void OnPeer();
+    void OnPeer()
+    {
+        const std::lock_guard lock(_mutex);
+        _rounds.OnPeer(Clock::now());
+        WakeIfEarlier();
+    }
 
 private:
-    using Clock = std::chrono::steady_clock;
+    std::optional<Clock::time_point> Due() override { return _rounds.Due(); }
+    void Work(std::unique_lock<std::mutex> &lock) override
+    {
+        lock.unlock();
+        const bool unheard = _calls.IsUnheard();
+        lock.lock();
+        if (_rounds.Next(Clock::now(), unheard))
+        {
+            lock.unlock();
+            _calls.Announce();
+            lock.lock();
+        }
+    }
 
-    void Run();
-
-    std::mutex _mutex;
-    std::condition_variable _changed;
     AnnouncementRounds _rounds;  // guarded by _mutex
-    bool _stop = false;          // guarded by _mutex
     Calls _calls;
-    std::thread _thread;
 };
 
 }  // namespace Rabit::Cyclone

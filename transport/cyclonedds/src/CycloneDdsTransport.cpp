@@ -6,7 +6,7 @@
 #include "CycloneReader.h"
 #include "CycloneWriter.h"
 #include "DomainConfig.h"
-#include "PeerAddresses.h"
+#include "RemoteParticipant.h"
 #include "SessionCore.h"
 #include "VendorDomain.h"
 #include "common/HostNetworks.h"
@@ -27,10 +27,10 @@ using CycloneSession = VendorSession<SessionCore, CycloneWriter, CycloneReader>;
 class CycloneBackend final : public RejoiningBackend
 {
 public:
-    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<DiscoveryTurns> turns) override
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings,
+                                         const SessionContext &context) override
     {
-        return std::make_unique<CycloneSession>(settings, std::move(onPeer), std::move(turns));
+        return std::make_unique<CycloneSession>(settings, context);
     }
     void CheckConfig(const TransportSettings &settings) const override
     {
@@ -63,7 +63,8 @@ private:
         settings.Interfaces = {network->Address};
         settings.Peers.clear();
         const VendorDomain domain(settings, std::make_shared<SessionLog>(settings),
-                                  std::make_shared<DiscoveryTurns>());
+                                  std::make_shared<DiscoveryTurns>(),
+                                  std::make_shared<Rtps::RecentGoodbyes>());
     }
 };
 

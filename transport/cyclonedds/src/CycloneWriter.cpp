@@ -1,6 +1,7 @@
 #include "CycloneWriter.h"
 
 #include <algorithm>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -66,9 +67,12 @@ WriteResult CycloneWriter::SendTo(const std::string &node, const SampleEncoder &
     {
     public:
         Direction(const ddsi_sertype *type, const ddsi_guid_t &writer,
-                  const std::vector<ddsi_guid_t> &participants)
+                  const std::vector<Rtps::GuidPrefix> &participants)
         {
-            RabitCycloneWriteTo(type, &writer, participants.data(), participants.size());
+            std::vector<ddsi_guid_t> guids;
+            std::transform(participants.begin(), participants.end(), std::back_inserter(guids),
+                           &ParticipantOf);
+            RabitCycloneWriteTo(type, &writer, guids.data(), guids.size());
         }
         ~Direction() { RabitCycloneWriteToAll(); }
         Direction(const Direction &) = delete;

@@ -3,8 +3,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <mutex>
+#include <variant>
+
+#include "common/RecentMap.h"
 
 namespace Rabit::Cyclone
 {
@@ -19,12 +21,20 @@ public:
     static constexpr std::size_t MostAddresses = 256;
 
     // A participant at `from` has announced itself to us alone.
-    void OnAnnouncement(const Address &from);
-    bool MayGo(const Address &to) const;
+    void OnAnnouncement(const Address &from)
+    {
+        const std::lock_guard lock(_mutex);
+        _known.Put(from, {});
+    }
+    bool MayGo(const Address &to) const
+    {
+        const std::lock_guard lock(_mutex);
+        return _known.Find(to) != nullptr;
+    }
 
 private:
     mutable std::mutex _mutex;
-    std::deque<Address> _known;  // guarded by _mutex; the oldest first
+    RecentMap<Address, std::monostate> _known{MostAddresses};  // guarded by _mutex
 };
 
 }  // namespace Rabit::Cyclone

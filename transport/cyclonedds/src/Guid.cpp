@@ -3,7 +3,7 @@
 #include <arpa/inet.h>
 #include <dds/ddsi/q_rtps.h>
 
-#include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 namespace Rabit::Cyclone
@@ -39,14 +39,7 @@ ddsi_guid_t ToVendorGuid(const WriterId &id)
     return guid;
 }
 
-Prefix PrefixOf(const WriterId &id)
-{
-    Prefix prefix;
-    std::copy_n(id.begin(), prefix.size(), prefix.begin());
-    return prefix;
-}
-
-ddsi_guid_t ParticipantOf(const Prefix &prefix)
+ddsi_guid_t ParticipantOf(const Rtps::GuidPrefix &prefix)
 {
     ddsi_guid_t guid;
     std::memcpy(guid.prefix.u, prefix.data(), prefix.size());

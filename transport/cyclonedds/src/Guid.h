@@ -5,20 +5,15 @@
 #include <dds/ddsi/ddsi_guid.h>
 #include <rabit/transport/Transport.h>
 
-#include <array>
-#include <cstdint>
+#include "common/Rtps.h"
 
 namespace Rabit::Cyclone
 {
 
-// Common part of the GUIDs of a participant and its endpoints.
-using Prefix = std::array<std::uint8_t, 12>;
-
 WriterId ToWriterId(const ddsi_guid_t &guid);
 WriterId ToWriterId(const dds_guid_t &guid);
 ddsi_guid_t ToVendorGuid(const WriterId &id);
-Prefix PrefixOf(const WriterId &id);
 // The participant's own GUID.
-ddsi_guid_t ParticipantOf(const Prefix &prefix);
+ddsi_guid_t ParticipantOf(const Rtps::GuidPrefix &prefix);
 
 }  // namespace Rabit::Cyclone

@@ -5,27 +5,15 @@
 #include <string>
 #include <utility>
 
-#include "ParticipantLease.h"
-#include "PeerAddresses.h"
+#include "RemoteParticipant.h"
 #include "VendorLog.h"
-#include "common/SettingsCheck.h"
+#include "common/RtpsReader.h"
 
 namespace Rabit::Cyclone
 {
 
 namespace
 {
-
-// Number of departed participants that are remembered. The instances of their writers end after they left,
-// and the goodbye may overtake an announcement that was sent before it.
-constexpr std::size_t MostGone = 64;
-
-// Returns the settings; throws TransportError if they are impossible.
-const TransportSettings &Checked(const TransportSettings &settings)
-{
-    CheckSettings(settings);
-    return settings;
-}
 
 // Time from a newcomer to our answer: 50 to 150 ms, depending on the name, so that not all nodes answer at
 // once.
@@ -82,7 +70,7 @@ Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain,
 }
 
 // Call only from a listener of a built-in topic.
-PeerPlace PlaceOf(const Prefix &prefix)
+PeerPlace PlaceOf(const Rtps::GuidPrefix &prefix)
 {
     PeerPlace place;
     const ddsi_guid_t participant = ParticipantOf(prefix);
@@ -146,24 +134,19 @@ RemoteEndpoint Described(const dds_builtintopic_endpoint_t &announced, const Wri
 
 }  // namespace
 
-SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<DiscoveryTurns> turns)
-    : _log(std::make_shared<SessionLog>(Checked(settings))),
-      _topics(_log),
-      _peerGate(_log, "peer events"),
-      _onPeer(std::move(onPeer)),
-      _proof(settings, _log),
-      _domain(settings, _log, std::move(turns)),
+SessionCore::SessionCore(const TransportSettings &settings, const SessionContext &context)
+    : VendorCore(settings, context),
+      _domain(settings, Log(), context.Turns, _goodbyes),
       _announcements(AnswerGap(settings), _domain.HasCard()),
       _participant(MakeParticipant(settings, _domain.Id(), _domain.HasCard()))
 {
     if (settings.SharedMemory)
     {
-        _log->Line("Cyclone DDS shares memory only through a daemon of its own: UDP is used");
+        Log()->Line("Cyclone DDS shares memory only through a daemon of its own: UDP is used");
     }
     dds_guid_t guid;
     dds_get_guid(_participant.Get(), &guid);
-    _own = PrefixOf(ToWriterId(guid));
+    _own = Rtps::PrefixOf(ToWriterId(guid));
     const auto watch = [this](dds_entity_t topic, dds_on_data_available_fn onData)
     {
         const Listener listener = MakeListener(this);
@@ -189,53 +172,13 @@ SessionCore::~SessionCore()
     Close();
 }
 
-void SessionCore::Close()
-{
-    _closed = true;
-    _peerGate.Close();
-}
-
-std::shared_ptr<const PeerSession> SessionCore::IdentityOf(const WriterId &writer) const
-{
-    const Prefix prefix = PrefixOf(writer);
-    const std::lock_guard lock(_mutex);
-    if (Identity known = _peers.Find(prefix))
-    {
-        return known;
-    }
-    const auto gone = _gone.find(prefix);
-    return gone == _gone.end() ? nullptr : gone->second;
-}
-
-std::vector<ddsi_guid_t> SessionCore::ParticipantsOf(const std::string &node) const
-{
-    const std::lock_guard lock(_mutex);
-    std::vector<ddsi_guid_t> participants;
-    for (const Prefix &prefix : _peers.Of(node))
-    {
-        participants.push_back(ParticipantOf(prefix));
-    }
-    return participants;
-}
-
-std::vector<PeerPlace> SessionCore::PeerPlaces() const
-{
-    const std::lock_guard lock(_mutex);
-    std::vector<PeerPlace> places;
-    for (const auto &[prefix, place] : _places)
-    {
-        places.push_back(place);
-    }
-    return places;
-}
-
 void SessionCore::OnParticipants(dds_entity_t reader, void *self)
 {
     auto &core = *static_cast<SessionCore *>(self);
     TakeAll<dds_builtintopic_participant_t>(reader,
                                             [&](const auto &peer, const dds_sample_info_t &info)
                                             {
-                                                const Prefix prefix = PrefixOf(ToWriterId(peer.key));
+                                                const auto prefix = Rtps::PrefixOf(ToWriterId(peer.key));
                                                 if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
                                                 {
                                                     core.PeerGone(prefix);
@@ -263,18 +206,18 @@ void SessionCore::OnEndpoints(dds_entity_t reader, void *self)
             const WriterId id = ToWriterId(endpoint.key);
             if (info.instance_state != DDS_ALIVE_INSTANCE_STATE)
             {
-                core._topics.RemoteGone(id);
+                core.Topics().RemoteGone(id);
             }
-            else if (info.valid_data && PrefixOf(id) != core._own)
+            else if (info.valid_data && Rtps::PrefixOf(id) != core._own)
             {
                 const auto identity = core.IdentityOf(id);
-                core._topics.RemoteAppeared(
+                core.Topics().RemoteAppeared(
                     Described(endpoint, id, isWriter, identity != nullptr ? identity->Node : ""));
             }
         });
 }
 
-void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
+void SessionCore::PeerAppeared(const Rtps::GuidPrefix &prefix, const dds_qos_t *qos)
 {
     void *data = nullptr;
     std::size_t size = 0;
@@ -292,30 +235,10 @@ void SessionCore::PeerAppeared(const Prefix &prefix, const dds_qos_t *qos)
     dds_qget_entity_name(qos, &name);
     const ParticipantIdentity announced{name != nullptr ? name : "", *incarnation};
     dds_free(name);
-    if (!_proof.MayBe(announced.Node, prefix))
-    {
-        return;
-    }
-    // The vendor may handle an announcement after a goodbye that overtook it.
-    if (_domain.HasSaidGoodbye(prefix))
-    {
-        return;
-    }
-    const PeerPlace place = PlaceOf(prefix);
-    Identity identity;
-    {
-        const std::lock_guard lock(_mutex);
-        identity = _peers.Add(prefix, announced);
-        if (identity == nullptr)
-        {
-            return;
-        }
-        _places.insert_or_assign(prefix, place);
-    }
-    Tell(PeerEvent::Kind::Appeared, identity);
+    Appeared(prefix, announced, PlaceOf(prefix));
 }
 
-void SessionCore::PeerGone(const Prefix &prefix)
+void SessionCore::PeerGone(const Rtps::GuidPrefix &prefix)
 {
     const ddsi_guid_t participant = ParticipantOf(prefix);
     const bool isForgotten = _domain.WasForgotten(prefix);
@@ -327,42 +250,11 @@ void SessionCore::PeerGone(const Prefix &prefix)
     {
         _domain.Lost(prefix);
     }
-    Identity identity;
+    const auto session = Gone(prefix, how);
+    if (isForgotten)
     {
-        const std::lock_guard lock(_mutex);
-        identity = _peers.Remove(prefix);
-        if (isForgotten)
-        {
-            _proof.Unfinished(identity != nullptr ? identity->Node : "");
-        }
-        if (identity == nullptr)
-        {
-            return;
-        }
-        _places.erase(prefix);
-        if (_gone.insert_or_assign(prefix, identity).second)
-        {
-            _goneOrder.push_back(prefix);
-        }
-        if (_goneOrder.size() > MostGone)
-        {
-            _gone.erase(_goneOrder.front());
-            _goneOrder.pop_front();
-        }
+        Log()->AuthenticationFailed(session != nullptr ? session->Node : "");
     }
-    Tell(how, identity);
-}
-
-void SessionCore::Tell(PeerEvent::Kind kind, const Identity &identity)
-{
-    if (!_onPeer)
-    {
-        return;
-    }
-    _worker.Post(
-        [this, kind, identity] {
-            _peerGate.Run([&] { _onPeer({kind, identity->Node, identity->Incarnation}); });
-        });
 }
 
 }  // namespace Rabit::Cyclone

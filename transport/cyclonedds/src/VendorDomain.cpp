@@ -5,9 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <thread>
 #include <utility>
@@ -32,41 +30,8 @@ namespace Rabit::Cyclone
 namespace
 {
 
-// The numbers of this process's domains.
-class Numbers
-{
-public:
-    // Returns `wanted` if no session has it, so that a vendor's file that names the domain applies; otherwise
-    // a number that no domain of the network has.
-    static dds_domainid_t Take(dds_domainid_t wanted)
-    {
-        constexpr dds_domainid_t FirstOther = 1000;
-        const std::lock_guard lock(Mutex());
-        dds_domainid_t number = wanted;
-        for (dds_domainid_t other = FirstOther; !Taken().insert(number).second; ++other)
-        {
-            number = other;
-        }
-        return number;
-    }
-    static void Give(dds_domainid_t number)
-    {
-        const std::lock_guard lock(Mutex());
-        Taken().erase(number);
-    }
-
-private:
-    static std::mutex &Mutex()
-    {
-        static std::mutex mutex;
-        return mutex;
-    }
-    static std::set<dds_domainid_t> &Taken()
-    {
-        static std::set<dds_domainid_t> taken;
-        return taken;
-    }
-};
+// Numbers from here on are of no domain of the network.
+constexpr dds_domainid_t FirstOther = 1000;
 
 // True if a datagram sent now carries samples.
 bool IsOfSamplesSent(std::span<const std::uint8_t> head)
@@ -96,25 +61,6 @@ bool IsGroup(const DirectAnnouncements::Address &address)
 
 }  // namespace
 
-void VendorDomain::NoteRoute(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route)
-{
-    constexpr std::size_t most = 4096;
-    Rtps::GuidPrefix to{};
-    Rtps::VisitSubmessages(datagram,
-                           [&to](const Rtps::ConstSubmessage &part)
-                           {
-                               if (part.Kind == Rtps::SubmessageKind::InfoDestination)
-                               {
-                                   to = Rtps::PrefixOf(part.Body());
-                               }
-                           });
-    const std::lock_guard lock(_cardMutex);
-    if (to != Rtps::GuidPrefix{} && (_cardRoutes.size() < most || _cardRoutes.contains(to)))
-    {
-        _cardRoutes.insert_or_assign(to, route);
-    }
-}
-
 bool VendorDomain::HasKeysOf(const Rtps::GuidPrefix &participant)
 {
     std::unique_lock lock(_cardMutex);
@@ -142,45 +88,16 @@ void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
     RabitCycloneForget(_watch, &guid);
 }
 
-void VendorDomain::NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup)
-{
-    const std::lock_guard lock(_cardMutex);
-    if (isGroup)
-    {
-        _groups.emplace(route.connection, route);
-        return;
-    }
-    if (_hasPeers)
-    {
-        _listed.Note(route, std::chrono::steady_clock::now());
-    }
-}
-
 void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram)
 {
-    std::vector<std::pair<RabitCycloneRoute, RabitCycloneTo>> ways;
+    std::vector<RabitCycloneRoute> routes;
     {
         const std::lock_guard lock(_cardMutex);
-        const auto route = to ? _cardRoutes.find(*to) : _cardRoutes.end();
-        if (route != _cardRoutes.end())
-        {
-            ways.emplace_back(route->second, RabitCycloneToHost);
-        }
-        else
-        {
-            for (const auto &[connection, group] : _groups)
-            {
-                ways.emplace_back(group, RabitCycloneToDiscoveryGroup);
-            }
-            for (const RabitCycloneRoute &listed : _listed.Current(std::chrono::steady_clock::now()))
-            {
-                ways.emplace_back(listed, RabitCycloneToHost);
-            }
-        }
+        routes = _cardRoutes.To(to, std::chrono::steady_clock::now());
     }
-    for (const auto &[way, where] : ways)
+    for (const RabitCycloneRoute &route : routes)
     {
-        RabitCycloneSend(_watch, &way, where, datagram.data(), datagram.size());
+        RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size());
     }
 }
 
@@ -287,7 +204,8 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     }
     if (domain._meets && domain._meeting.Sending({datagram, size}))
     {
-        domain.NoteRoute({datagram, size}, *route);
+        const std::lock_guard lock(domain._cardMutex);
+        domain._cardRoutes.Note(DestinationOf({datagram, size}), *route);
         return false;
     }
     const DirectAnnouncements::Address address{route->address[0], route->address[1], route->address[2],
@@ -297,24 +215,29 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
     {
         return false;
     }
-    if (announcing.Any)
+    if (announcing.Any && (IsGroup(address) || domain._hasPeers))
     {
-        domain.NoteAnnouncement(*route, IsGroup(address));
+        const std::lock_guard lock(domain._cardMutex);
+        domain._cardRoutes.NoteForAll(*route, IsGroup(address), std::chrono::steady_clock::now());
     }
     if (domain._secured)
     {
-        if (announcing.Alone)
+        const auto exchange = ReadKeyExchange({datagram, size});
         {
             const std::lock_guard lock(domain._cardMutex);
-            domain._announcement.assign(datagram, datagram + size);
+            if (announcing.Alone)
+            {
+                domain._announcement.assign(datagram, datagram + size);
+            }
+            if (exchange)
+            {
+                domain._cardRoutes.Note(exchange->To, *route);
+            }
         }
-        domain._handshakes.Sent({datagram, size}, *route);
-        domain.RepeatHandshakes();
-        if (const auto exchange = ReadKeyExchange({datagram, size}))
+        if (exchange)
         {
-            domain.NoteRoute({datagram, size}, *route);
             domain._authentication.Sent(*exchange);
-            return !domain._outbox.PutExchange({datagram, size}, *exchange, *route);
+            return !domain._keys.Put({datagram, size}, *exchange, *route);
         }
     }
     return true;
@@ -398,14 +321,6 @@ std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size
     return Rtps::JoinMessages(others, buffer, left);
 }
 
-void VendorDomain::RepeatHandshakes()
-{
-    for (const HandshakeEnds::Datagram &end : _handshakes.TakeDue(std::chrono::steady_clock::now()))
-    {
-        RabitCycloneSend(_watch, &end.Route, RabitCycloneToHost, end.Bytes.data(), end.Bytes.size());
-    }
-}
-
 std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::size_t size,
                                      std::size_t capacity, const unsigned char *from, bool direct)
 {
@@ -434,12 +349,10 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     }
     if (domain._secured)
     {
-        domain._handshakes.Received({datagram, admitted}, std::chrono::steady_clock::now());
-        domain.RepeatHandshakes();
         if (const auto exchange = ReadKeyExchange({datagram, admitted}))
         {
             domain._authentication.Received(*exchange);
-            if (!domain._outbox.ReceivedExchange(*exchange))
+            if (!domain._keys.Received(*exchange))
             {
                 return 0;
             }
@@ -458,8 +371,10 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
 }
 
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                           std::shared_ptr<DiscoveryTurns> turns)
-    : _log(log),
+                           const std::shared_ptr<DiscoveryTurns> &turns,
+                           std::shared_ptr<Rtps::RecentGoodbyes> goodbyes)
+    : _id(static_cast<dds_domainid_t>(settings.Domain), FirstOther),
+      _log(log),
       _multicast(IsMulticastForData(settings)),
       _secured(settings.Security.has_value()),
       _hasPeers(!settings.Peers.empty()),
@@ -467,13 +382,20 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                 .Memory = _multicast ? settings.Memory : settings.Lease,
                 .IsMulticast = _multicast},
                turns),
-      _listed(settings.AnnouncementPeriod),
+      _cardRoutes(settings.AnnouncementPeriod),
+      _goodbyes(std::move(goodbyes)),
       // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome,
              _goodbyes),
-      _outbox(std::move(turns), [this](const auto &route, auto datagram)
-              { RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size()); })
+      // The vendor sends the last message of a handshake once.
+      _keys(turns, KeyExchangeOutbox(true))
 {
+    if (_secured)
+    {
+        _keys.Start(
+            [this](const auto &route, auto datagram)
+            { RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size()); });
+    }
     _meets = GuardMode(settings) == Rtps::RtpsGuard::Mode::Full;
     if (_meets)
     {
@@ -485,26 +407,23 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     }
     KeepLargeBlocksOffTheHeap();
     const std::string config = MakeDomainConfig(settings);
-    _id = Numbers::Take(static_cast<dds_domainid_t>(settings.Domain));
-    if (settings.Security && _id != static_cast<dds_domainid_t>(settings.Domain))
+    if (settings.Security && Id() != static_cast<dds_domainid_t>(settings.Domain))
     {
-        Numbers::Give(_id);
         throw TransportError("with security, Cyclone DDS can be in domain " +
                                  std::to_string(settings.Domain) + " only once in a process",
                              "security");
     }
-    VendorLog::Follow(_id, log);
+    VendorLog::Follow(Id(), log);
     dds_entity_t entity = 0;
     std::string said;
     {
         const VendorLogCapture capture;
-        entity = dds_create_domain(_id, config.c_str());
+        entity = dds_create_domain(Id(), config.c_str());
         said = capture.FirstLine();
     }
     if (entity < 0)
     {
-        VendorLog::Leave(_id);
-        Numbers::Give(_id);
+        VendorLog::Leave(Id());
         const std::string why = said.empty() ? dds_strretcode(entity) : said;
         if (!settings.BackendConfig.empty())
         {
@@ -541,14 +460,9 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     if (_secured && _watch != nullptr)
     {
         _authentication.Start({.IsAuthenticated = [this](const auto &peer) { return HasKeysOf(peer); },
-                               .IsWaiting = [this](const auto &peer) { return _outbox.IsWaiting(peer); },
+                               .IsWaiting = [this](const auto &peer) { return _keys.IsWaiting(peer); },
                                .Forget = [this](const auto &peer, auto /*number*/) { Forget(peer); },
-                               .Drop =
-                                   [this](const auto &peer)
-                               {
-                                   _outbox.Forget(peer);
-                                   _handshakes.Forget(peer);
-                               }});
+                               .Drop = [this](const auto &peer) { _keys.Forget(peer); }});
     }
     if (_watch == nullptr)
     {
@@ -576,11 +490,10 @@ VendorDomain::~VendorDomain()
 {
     _authentication.Stop();
     _meeting.Stop();
-    _outbox.Stop();
+    _keys.Stop();
     _entity.Reset();
     RabitCycloneUnwatch(_watch);
-    VendorLog::Leave(_id);
-    Numbers::Give(_id);
+    VendorLog::Leave(Id());
 }
 
 }  // namespace Rabit::Cyclone

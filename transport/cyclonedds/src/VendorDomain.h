@@ -7,18 +7,20 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <set>
 #include <vector>
 
 #include "DirectAnnouncements.h"
 #include "Entity.h"
-#include "HandshakeEnds.h"
-#include "OutboxThread.h"
-#include "PeerAddresses.h"
+#include "RemoteParticipant.h"
+#include "RouteOrder.h"
 #include "common/HardwareAddresses.h"
-#include "common/RecentRoutes.h"
+#include "common/KeyExchangeThread.h"
+#include "common/ProcessNumber.h"
+#include "common/RecentGoodbyes.h"
 #include "common/SessionLog.h"
+#include "guard/AuthenticationThread.h"
 #include "guard/RtpsGuard.h"
+#include "rtps/CardRoutes.h"
 #include "rtps/MeetingThread.h"
 
 namespace Rabit::Cyclone
@@ -29,15 +31,17 @@ class VendorDomain
 {
 public:
     // Throws TransportError. The vendor's messages about the domain go to the log. The exchange of cards
-    // waits for `turns`.
+    // waits for `turns`. `goodbyes`: as RtpsGuard.
     VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                 std::shared_ptr<DiscoveryTurns> turns);
+                 const std::shared_ptr<DiscoveryTurns> &turns,
+                 std::shared_ptr<Rtps::RecentGoodbyes> goodbyes);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;
 
-    // The domain's number in this process; differs from the one on the network.
-    dds_domainid_t Id() const { return _id; }
+    // The domain's number in this process. It may differ from the one on the network; it does not if that is
+    // free, so that a vendor's file that names the domain applies.
+    dds_domainid_t Id() const { return _id.Get(); }
     // Announces a participant of the domain to all, now.
     void Announce(const ddsi_guid_t &participant) const;
     // True if a peer known to that participant has not shown yet that it knows the participant.
@@ -62,11 +66,6 @@ public:
     {
         return _authentication.WasForgotten(participant);
     }
-    // True if another participant has said goodbye a moment ago (guard/RecentGoodbyes.h).
-    bool HasSaidGoodbye(const Rtps::GuidPrefix &participant) const
-    {
-        return _goodbyes->Has(participant, std::chrono::steady_clock::now());
-    }
 
 private:
     static bool MaySend(void *self, unsigned char *datagram, std::size_t size,
@@ -81,13 +80,8 @@ private:
     bool HasKeysOf(const Rtps::GuidPrefix &participant);
     // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
     void Forget(const Rtps::GuidPrefix &participant);
-    // Called whenever something is sent or received: the vendor sends something regularly.
-    void RepeatHandshakes();
     // Returns the size of the part of a datagram that the vendor may see.
     std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size, const Rtps::HostAddress &from);
-    // Note the routes by which a card reaches one participant, or all.
-    void NoteRoute(std::span<const std::uint8_t> datagram, const RabitCycloneRoute &route);
-    void NoteAnnouncement(const RabitCycloneRoute &route, bool isGroup);
     // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram);
     // Runs on the meeting's thread.
@@ -95,7 +89,7 @@ private:
     // Puts messages from cards before a received datagram.
     std::size_t JoinDelivered(std::span<std::uint8_t> buffer, std::size_t size);
 
-    dds_domainid_t _id = 0;
+    const ProcessNumber<VendorDomain> _id;
     void *_watch = nullptr;  // returned by RabitCycloneWatch
     const std::shared_ptr<SessionLog> _log;
     const bool _multicast;  // reaches all peers but those that announce themselves to us alone
@@ -104,22 +98,17 @@ private:
     std::atomic<bool> _meets{false};
     Rtps::MeetingThread _meeting;
     std::mutex _cardMutex;
-    // Guarded by _cardMutex, to _cardRoutes: routes of announcements to groups, and to listed peers; and to
-    // each participant.
-    std::map<const void *, RabitCycloneRoute> _groups;
-    RecentRoutes<RabitCycloneRoute, RouteOrder> _listed;
-    // The unicast addresses by which the vendor reaches each other participant.
+    Rtps::CardRoutes<RabitCycloneRoute, RouteOrder> _cardRoutes;  // guarded by _cardMutex
+    // The unicast addresses by which the vendor reaches each other participant; guarded by _cardMutex.
     std::map<Rtps::GuidPrefix, std::vector<RabitCyclonePlace>> _reached;
-    std::map<Rtps::GuidPrefix, RabitCycloneRoute> _cardRoutes;
     std::vector<std::uint8_t> _announcement;            // our last one; guarded by _cardMutex
     std::vector<std::vector<std::uint8_t>> _delivered;  // for the vendor; guarded by _cardMutex
     DirectAnnouncements _direct;
-    HandshakeEnds _handshakes;
-    const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
+    const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes;
     Rtps::AuthenticationThread _authentication;
     Rtps::RtpsGuard _guard;
     HardwareAddresses _addresses;
-    OutboxThread _outbox;
+    KeyExchangeThread<RabitCycloneRoute, RouteOrder> _keys;
     Entity _entity;
 };
 

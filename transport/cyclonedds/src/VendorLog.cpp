@@ -1,6 +1,7 @@
 #include "VendorLog.h"
 
 #include <dds/ddsrt/log.h>
+#include <rabit/base/Assert.h>
 
 #include <cstdio>
 #include <map>
@@ -121,6 +122,7 @@ void VendorLog::Leave(dds_domainid_t domain)
 VendorLogCapture::VendorLogCapture()
 {
     TakeSink();
+    RABIT_ASSERT(TheCapture == nullptr);
     TheCapture = this;
 }
 

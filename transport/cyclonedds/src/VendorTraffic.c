@@ -481,8 +481,7 @@ void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, 
                       const unsigned char *datagram, size_t size)
 {
     const struct Watch *of = watch;
-    ddsi_locator_t destination =
-        to == RabitCycloneToSampleGroup ? of->domain->loc_default_mc : of->domain->loc_meta_mc;
+    ddsi_locator_t destination = of->domain->loc_default_mc;
     if (to == RabitCycloneToHost)
     {
         destination.kind = NN_LOCATOR_KIND_UDPv4;

@@ -8,7 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "PeerAddresses.h"
+#include "RemoteParticipant.h"
 
 #ifdef __cplusplus
 extern "C"
@@ -26,7 +26,6 @@ extern "C"
     enum RabitCycloneTo
     {
         RabitCycloneToHost,
-        RabitCycloneToDiscoveryGroup,
         RabitCycloneToSampleGroup
     };
 
@@ -67,8 +66,8 @@ extern "C"
     void *RabitCycloneWatch(struct RabitCycloneCalls calls);
     void RabitCycloneUnwatch(void *watch);
 
-    /* Sends a datagram of ours that way or, as `to` says, from the same socket to a group; `may` is not
-       called. Valid until the domain is deleted. */
+    /* Sends a datagram of ours that way or, as `to` says, from the same socket to the group of samples; `may`
+       is not called. Valid until the domain is deleted. */
     void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
                           const unsigned char *datagram, size_t size);
 

@@ -22,10 +22,10 @@ using FastDdsSession = VendorSession<FastDds::SessionCore, FastDds::FastDdsWrite
 class FastDdsBackend final : public RejoiningBackend
 {
 public:
-    std::unique_ptr<BackendSession> Open(const TransportSettings &settings, PeerHandler onPeer,
-                                         std::shared_ptr<DiscoveryTurns> turns) override
+    std::unique_ptr<BackendSession> Open(const TransportSettings &settings,
+                                         const SessionContext &context) override
     {
-        return std::make_unique<FastDdsSession>(settings, std::move(onPeer), std::move(turns));
+        return std::make_unique<FastDdsSession>(settings, context);
     }
     void CheckConfig(const TransportSettings &settings) const override
     {

@@ -51,7 +51,7 @@ FastDdsWriter::~FastDdsWriter()
 WriteResult FastDdsWriter::SendTo(const std::string &node, const SampleEncoder &sample,
                                   std::int64_t sourceTime)
 {
-    const Targets targets = _core->PrefixesOf(node);
+    const Targets targets = _core->ParticipantsOf(node);
     return Send(sample, sourceTime, false, &targets);
 }
 
@@ -140,7 +140,9 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
 bool FastDdsWriter::is_relevant(const rtps::CacheChange_t & /*change*/, const rtps::GUID_t &reader) const
 {
     const Targets *const targets = _targets;
-    return targets == nullptr || targets->contains(reader.guidPrefix);
+    const auto isOfReader = [&reader](const Rtps::GuidPrefix &target)
+    { return std::equal(target.begin(), target.end(), reader.guidPrefix.value); };
+    return targets == nullptr || std::any_of(targets->begin(), targets->end(), isOfReader);
 }
 
 int FastDdsWriter::MatchedReaders() const

@@ -32,7 +32,7 @@ public:
     int Destinations() const override;
 
 private:
-    using Targets = std::set<eprosima::fastrtps::rtps::GuidPrefix_t>;
+    using Targets = std::vector<Rtps::GuidPrefix>;
     WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose) override
     {
         return Send(sample, sourceTime, dispose, nullptr);

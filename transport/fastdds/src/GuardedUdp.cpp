@@ -9,7 +9,6 @@
 #include <functional>
 #include <map>
 #include <mutex>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -21,10 +20,10 @@
 #include "RequestPace.h"
 #include "common/HardwareAddresses.h"
 #include "common/HeldDatagrams.h"
-#include "common/KeyExchangeOutbox.h"
 #include "common/RecentNumbers.h"
-#include "common/RecentRoutes.h"
+#include "common/RtpsTraffic.h"
 #include "common/SendingSamples.h"
+#include "rtps/CardRoutes.h"
 #include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::FastDds
@@ -86,9 +85,12 @@ public:
           _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod,
                  RtpsGuard::Requests::Checked, descriptor.Chosen().Goodbyes),
           _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr),
-          _listed(descriptor.Chosen().AnnouncementPeriod)
+          _cardRoutes(descriptor.Chosen().AnnouncementPeriod)
     {
-        _descriptor.Chosen().Owed->Set([this] { SendOwed(); });
+        if (Keys() != nullptr)
+        {
+            Keys()->Start([this](const Route &route, auto datagram) { SendTo({route}, datagram); });
+        }
         if (MeetingThread *const meeting = Meeting())
         {
             _guard.SetObserver(*meeting);
@@ -106,19 +108,9 @@ public:
                                        const auto own = OwnAnnouncement();
                                        return !own.empty() && KeyAddressees::HasKeysOf(SenderOf(own), peer);
                                    },
-                                   .IsWaiting =
-                                       [this](const auto &peer)
-                                   {
-                                       const std::lock_guard lock(_sending);
-                                       return _exchanges.IsWaiting(peer);
-                                   },
+                                   .IsWaiting = [this](const auto &peer) { return Keys()->IsWaiting(peer); },
                                    .Forget = [this](const auto &peer, auto number) { Forget(peer, number); },
-                                   .Drop =
-                                       [this](const auto &peer)
-                                   {
-                                       const std::lock_guard lock(_sending);
-                                       _exchanges.Forget(peer);
-                                   }});
+                                   .Drop = [this](const auto &peer) { Keys()->Forget(peer); }});
         }
     }
     ~GuardedUdp() override
@@ -131,7 +123,10 @@ public:
         {
             meeting->Stop();
         }
-        _descriptor.Chosen().Owed->Set({});
+        if (Keys() != nullptr)
+        {
+            Keys()->Stop();
+        }
     }
 
     TransportDescriptorInterface *get_configuration() override { return &_descriptor; }
@@ -149,21 +144,19 @@ public:
               rtps::LocatorsIterator *begin, rtps::LocatorsIterator *end,
               const std::chrono::steady_clock::time_point &timeout) override
     {
-        const std::lock_guard lock(_sending);
-        const auto left = static_cast<std::uint32_t>(SizeWithoutStatistics({buffer, size}));
-        _guard.Sending({buffer, left});
-        OutgoingMessage message = ReadOutgoing({buffer, left});
-        if (message.Announcement && Authentication() != nullptr)
-        {
-            _announcement.assign(buffer, buffer + left);
-        }
+        std::span<const std::uint8_t> datagram(buffer, SizeWithoutStatistics({buffer, size}));
+        _guard.Sending(datagram);
+        OutgoingMessage message = ReadOutgoing(datagram);
         message.HasSamples = message.HasSamples || SendingSamples::Now();
-        if (const auto exchange = message.HasSamples ? std::nullopt : KeyExchangeOf({buffer, left});
-            exchange && PutExchange(sender, {buffer, left}, *exchange, *begin, *end))
+        if (!message.HasSamples && PutExchange(sender, datagram, *begin, *end))
         {
             return true;
         }
-        std::span<const std::uint8_t> datagram(buffer, left);
+        const std::lock_guard lock(_sending);
+        if (message.Announcement && Authentication() != nullptr)
+        {
+            _announcement.assign(datagram.begin(), datagram.end());
+        }
         if (message.Announcement && _descriptor.Chosen().Mode == RtpsGuard::Mode::Full)
         {
             WriteWithoutProperties(datagram, _shortened);
@@ -193,13 +186,9 @@ public:
             {
                 _chosen.push_back(destination);
             }
-            if (message.Announcement && rtps::IPLocator::isMulticast(destination))
+            if (message.Announcement && (IsGroup(destination) || _descriptor.Chosen().HasPeers))
             {
-                _groups.emplace(sender, destination);
-            }
-            else if (message.Announcement && _descriptor.Chosen().HasPeers)
-            {
-                _listed.Note({sender, destination}, now);
+                _cardRoutes.NoteForAll({sender, destination}, IsGroup(destination), now);
             }
         }
         if (message.Announcement)
@@ -267,7 +256,6 @@ public:
 
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
-    using Route = std::pair<rtps::SenderResource *, rtps::Locator_t>;
     // The vendor's receiver to which the content of cards, and goodbyes, are delivered.
     struct Receiver
     {
@@ -297,6 +285,7 @@ private:
             HandOn(receiver, theirs);
         }
     }
+    KeyThread *Keys() const { return _descriptor.Chosen().Keys.get(); }
     // Notes the address of a participant to which the vendor sends. Requires _sending.
     void NoteRoute(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
                    rtps::LocatorsIterator &begin, const rtps::LocatorsIterator &end)
@@ -304,34 +293,33 @@ private:
         const GuidPrefix to = DestinationOf(datagram);
         for (; to != GuidPrefix{} && begin != end; ++begin)
         {
-            if (Leaves(NumberOf(sender), *begin) && !rtps::IPLocator::isMulticast(*begin) &&
-                (_cardRoutes.size() < AnnouncementPace::MostDestinations || _cardRoutes.contains(to)))
+            if (Leaves(NumberOf(sender), *begin) && !IsGroup(*begin))
             {
                 NumberOf(*begin);
-                _cardRoutes.insert_or_assign(to, std::pair(sender, *begin));
+                _cardRoutes.Note(to, {sender, *begin});
             }
         }
     }
     // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<GuidPrefix> &to, std::span<const std::uint8_t> datagram)
     {
+        std::vector<Route> routes;
+        {
+            const std::lock_guard lock(_sending);
+            routes = _cardRoutes.To(to, std::chrono::steady_clock::now());
+        }
+        SendTo(routes, datagram);
+    }
+    void SendTo(const std::vector<Route> &routes, std::span<const std::uint8_t> datagram)
+    {
         constexpr std::chrono::milliseconds LongestWait{100};
         const auto timeout = std::chrono::steady_clock::now() + LongestWait;
         const std::lock_guard lock(_sending);
-        const auto send = [&](const Route &way)
+        for (const auto &[sender, destination] : routes)
         {
-            _chosen.assign(1, way.second);
-            SendChosen(way.first, datagram, false, timeout);
-        };
-        const auto route = to ? _cardRoutes.find(*to) : _cardRoutes.end();
-        if (route != _cardRoutes.end())
-        {
-            send(route->second);
-            return;
+            _chosen.assign(1, destination);
+            SendChosen(sender, datagram, false, timeout);
         }
-        std::for_each(_groups.begin(), _groups.end(), send);
-        const auto listed = _listed.Current(std::chrono::steady_clock::now());
-        std::for_each(listed.begin(), listed.end(), send);
     }
     Receiver LastReceiver()
     {
@@ -427,94 +415,41 @@ private:
                               SendChosen(sender, bytes, true, now + LongestWait);
                           });
     }
-    void SendOwed()
-    {
-        const std::lock_guard lock(_sending);
-        SendExchanges(std::chrono::steady_clock::now());
-    }
-    // Requires _sending.
-    void ScheduleOwed()
-    {
-        if (const auto due = _exchanges.Due())
-        {
-            _descriptor.Chosen().SendOwedAt(*due);
-        }
-    }
-
-    std::optional<KeyExchange> KeyExchangeOf(std::span<const std::uint8_t> datagram) const
-    {
-        return _descriptor.Chosen().Mode == RtpsGuard::Mode::Protected ? ReadKeyExchange(datagram)
-                                                                       : std::nullopt;
-    }
-    // Requires _sending, as does the next one. Returns false if the datagram should be sent unchanged.
+    // Takes a datagram of a key exchange, for each of its destinations. Returns false if it should be sent
+    // unchanged; then no destination was passed over.
     bool PutExchange(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
-                     const KeyExchange &what, rtps::LocatorsIterator &begin,
-                     const rtps::LocatorsIterator &end)
+                     rtps::LocatorsIterator &begin, const rtps::LocatorsIterator &end)
     {
-        const auto now = std::chrono::steady_clock::now();
-        const std::uint32_t socket = NumberOf(sender);
-        _exchanges.SetRate(_descriptor.Chosen().Turns->KeyRate());
-        _self = what.From;
-        for (; begin != end; ++begin)
+        const auto what = Keys() != nullptr ? ReadKeyExchange(datagram) : std::nullopt;
+        for (; what && begin != end; ++begin)
         {
-            if (Leaves(socket, *begin))
+            std::unique_lock lock(_sending);
+            if (Leaves(NumberOf(sender), *begin))
             {
                 NumberOf(*begin);
-                NoteExchangeRoute(what, {sender, *begin});
-                if (!_exchanges.Put(datagram, what, _routes.Of({sender, *begin}).first, now))
+                _cardRoutes.Note(what->To, {sender, *begin});
+                lock.unlock();
+                if (Authentication() != nullptr && what->To != KeyExchange::Prefix{})
+                {
+                    Authentication()->Sent(*what);
+                }
+                if (!Keys()->Put(datagram, *what, {sender, *begin}))
                 {
                     return false;  // no earlier one was put either
                 }
             }
         }
-        SendExchanges(now);
-        return true;
-    }
-    void NoteExchangeRoute(const KeyExchange &what, const Route &route)
-    {
-        if (Authentication() != nullptr && what.To != KeyExchange::Prefix{})
-        {
-            Authentication()->Sent(what);
-            if (_cardRoutes.size() < AnnouncementPace::MostDestinations || _cardRoutes.contains(what.To))
-            {
-                _cardRoutes.insert_or_assign(what.To, route);
-            }
-        }
-    }
-    void SendExchanges(TimePoint now)
-    {
-        constexpr std::chrono::milliseconds LongestWait{100};
-        for (const KeyExchangeOutbox::Datagram &each : _exchanges.TakeDue(now))
-        {
-            // Null: thousands of other routes have come since.
-            if (const Route *const route = _routes.KeyOf(each.Route))
-            {
-                _chosen.assign(1, route->second);
-                SendChosen(route->first, each.Bytes, false, now + LongestWait);
-            }
-        }
-        ScheduleOwed();
+        return what.has_value();
     }
     // Notes a received datagram. Returns false if the vendor should not see it.
     bool NoteExchange(std::span<const std::uint8_t> datagram)
     {
-        const auto what = KeyExchangeOf(datagram);
-        if (!what)
-        {
-            return true;
-        }
-        const std::lock_guard lock(_sending);
-        if (what->To != _self)
-        {
-            return true;
-        }
-        if (Authentication() != nullptr)
+        const auto what = Keys() != nullptr ? ReadKeyExchange(datagram) : std::nullopt;
+        if (what && Authentication() != nullptr && Keys()->IsForUs(*what))
         {
             Authentication()->Received(*what);
         }
-        const bool isHeard = _exchanges.Received(*what, std::chrono::steady_clock::now());
-        ScheduleOwed();
-        return isHeard;
+        return !what || Keys()->Received(*what);
     }
 
     void Translate(std::span<std::uint8_t> datagram)
@@ -564,14 +499,8 @@ private:
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;
-    KeyExchangeOutbox _exchanges;
     HardwareAddresses _addresses;
-    GuidPrefix _self{};            // known once something was exchanged
-    RecentNumbers<Route> _routes;  // of _exchanges
-    // Routes of announcements to groups.
-    std::set<Route> _groups;
-    RecentRoutes<Route> _listed;  // other routes of announcements
-    std::map<GuidPrefix, Route> _cardRoutes;
+    CardRoutes<Route> _cardRoutes;
     std::vector<std::uint8_t> _announcement;  // our last one, if Authentication() wants it
     RecentNumbers<rtps::Locator_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;

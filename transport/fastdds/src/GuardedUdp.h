@@ -18,13 +18,19 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
-#include "DeferredCall.h"
+#include "common/KeyExchangeThread.h"
+#include "guard/AuthenticationThread.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/MeetingThread.h"
 
 namespace Rabit::FastDds
 {
+
+// A socket of the vendor's, and an address.
+using Route = std::pair<eprosima::fastrtps::rtps::SenderResource *, eprosima::fastrtps::rtps::Locator_t>;
+using KeyThread = KeyExchangeThread<Route>;
 
 class GuardedUdpDescriptor final : public eprosima::fastdds::rtps::ChainingTransportDescriptor
 {
@@ -41,34 +47,28 @@ public:
         bool SocketsSendAll = false;
         // Called, on the receiving thread, for each datagram of which the guard kept something back that an
         // honest peer does not send.
-        std::function<void()> OnDropped;
+        std::function<void()> OnDropped{};
         // Called, on any thread, each time that a datagram is given to a socket, with the numbers to count.
-        std::function<void(bool samples, std::size_t datagrams, std::size_t bytes)> OnSent;
+        std::function<void(bool samples, std::size_t datagrams, std::size_t bytes)> OnSent{};
         // Called, on the receiving thread, when the participant should be announced to a peer that has not
         // heard it.
-        std::function<void()> Announce;
+        std::function<void()> Announce{};
         // Announcement period of the vendor. The participant should also be announced at the time with which
         // AnnounceAt was last called, on any thread with the vendor's locks held.
         std::chrono::milliseconds AnnouncementPeriod{0};
-        std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt;
-        // Returns true if a participant listens to the discovery group. Called on any thread with the
-        // vendor's locks held.
-        std::function<bool(const Rtps::GuidPrefix &)> IsInGroup;
-        // Called, on any thread with the vendor's locks held: Owed must run at that time, on a thread without
-        // locks. The last time named replaces earlier ones.
-        std::function<void(std::chrono::steady_clock::time_point)> SendOwedAt;
-        std::shared_ptr<DeferredCall> Owed;
+        std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt{};
+        // Schedules the exchange of keys. Null: without DDS Security.
+        std::shared_ptr<KeyThread> Keys{};
         // Null: endpoints are found by the vendor's discovery alone.
-        std::shared_ptr<Rtps::MeetingThread> Meeting;
+        std::shared_ptr<Rtps::MeetingThread> Meeting{};
         // Null unless Mode is Protected.
-        std::shared_ptr<Rtps::AuthenticationThread> Authentication;
+        std::shared_ptr<Rtps::AuthenticationThread> Authentication{};
         // Where the guard notes the goodbyes of known participants.
         std::shared_ptr<Rtps::RecentGoodbyes> Goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
         // The group to which samples go; empty: they go to each host separately.
-        std::optional<eprosima::fastrtps::rtps::Locator_t> SampleGroup;
+        std::optional<eprosima::fastrtps::rtps::Locator_t> SampleGroup{};
         // Peers are listed; they may not hear the group.
         bool HasPeers = false;
-        std::shared_ptr<DiscoveryTurns> Turns;
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

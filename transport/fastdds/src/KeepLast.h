@@ -1,6 +1,8 @@
 // Selects the samples kept for each instance: the last ones, and none after the instance has ended.
 #pragma once
 
+#include <rabit/base/Assert.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -62,7 +64,12 @@ public:
     }
 
     // Adds a sample. Numbers must rise.
-    void Add(const Key &instance, std::uint64_t number) { _instances[instance].Numbers.push_back(number); }
+    void Add(const Key &instance, std::uint64_t number)
+    {
+        auto &numbers = _instances[instance].Numbers;
+        RABIT_ASSERT(numbers.empty() || numbers.back() < number);
+        numbers.push_back(number);
+    }
 
     // Removes a sample, for any reason. An unknown number is ignored.
     void Remove(const Key &instance, std::uint64_t number)

@@ -17,13 +17,6 @@ using namespace Rtps;
 namespace
 {
 
-// For all submessages but samples: the reader comes first.
-EntityId WriterOf(RtpsReader body)
-{
-    body.Skip(4);
-    return body.Entity();
-}
-
 bool Asks(RtpsReader body, std::uint8_t flags, FirstRequest &request)
 {
     request.Reader = body.Entity();
@@ -65,6 +58,9 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
     const auto visit = [&](const Part &part)
     {
         RtpsReader body = part.Reader();
+        const auto writer = IsDelivery(part.Kind) ? WriterOf(part) : std::nullopt;
+        const bool isOfSamples = writer && !IsBuiltin(*writer);
+        message.HasSamples = message.HasSamples || isOfSamples;
         switch (part.Kind)
         {
             case SubmessageKind::Pad:
@@ -75,37 +71,26 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 ++destinations;
                 break;
             case SubmessageKind::AckNack:
-                message.HasSamples = message.HasSamples || !IsBuiltin(WriterOf(body));
                 (Asks(body, part.Flags, request) ? requests : others) += 1;
                 break;
             case SubmessageKind::Data:
             case SubmessageKind::DataFrag:
             {
-                body.Skip(WriterInData);
-                const EntityId writer = body.Entity();
-                message.HasSamples = message.HasSamples || !IsBuiltin(writer);
                 const bool whole = part.Kind == SubmessageKind::Data;
                 const bool announces = whole && IsAnnouncement(part);
                 (announces ? announcements : others) += 1;
-                samples += whole && !IsBuiltin(writer) ? 1 : 0;
+                samples += whole && isOfSamples ? 1 : 0;
                 // The digest omits the reader that it is for.
                 digest =
                     31 * digest + DigestOf(part.Body().subspan(std::min(WriterInData, part.Body().size())));
                 break;
             }
             case SubmessageKind::Heartbeat:
-                message.HasSamples = message.HasSamples || !IsBuiltin(WriterOf(body));
                 body.Skip(sizeof(EntityId));  // the reader
                 heartbeat.Writer = body.Entity();
                 heartbeat.First = body.Sequence();
                 heartbeat.Last = body.Sequence();
                 ++heartbeats;
-                break;
-            case SubmessageKind::HeartbeatFrag:
-            case SubmessageKind::Gap:
-            case SubmessageKind::NackFrag:
-                message.HasSamples = message.HasSamples || !IsBuiltin(WriterOf(body));
-                ++others;
                 break;
             default:
                 ++others;
@@ -130,20 +115,6 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
         message.Heartbeat = heartbeat;
     }
     return message;
-}
-
-GuidPrefix DestinationOf(std::span<const std::uint8_t> datagram)
-{
-    GuidPrefix to{};
-    VisitSubmessages(datagram,
-                     [&to](const Part &part)
-                     {
-                         if (part.Kind == SubmessageKind::InfoDestination && to == GuidPrefix{})
-                         {
-                             to = PrefixOf(part.Body());
-                         }
-                     });
-    return to;
 }
 
 void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to)
@@ -178,18 +149,17 @@ void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vec
         add(part.Whole.first(FixedSize));
         to[begins + 1] = static_cast<std::uint8_t>(to[begins + 1] & ~InlineQosFlag);
         add(payload.first(EncapsulationSize));
-        const bool littleEndianList = (payload[1] & 1) != 0;
         const std::span<const std::uint8_t> parameters = payload.subspan(EncapsulationSize);
-        RtpsReader list(parameters, littleEndianList);
         std::size_t copied = 0;
-        while (const auto parameter = TakeParameter(list))
-        {
-            if (parameter->Id == Parameters::PropertyList)
-            {
-                add(parameters.subspan(copied, parameter->At - copied));
-                copied = list.Position();
-            }
-        }
+        VisitParameters(payload,
+                        [&](const ListParameter &parameter)
+                        {
+                            if (parameter.Id == Parameters::PropertyList)
+                            {
+                                add(parameters.subspan(copied, parameter.At - copied));
+                                copied = parameter.At + 4 + parameter.Value.size();
+                            }
+                        });
         add(parameters.subspan(copied));
         // A length of 0 means "to the end of the message", which remains true.
         if (part.Whole[2] != 0 || part.Whole[3] != 0)

@@ -47,9 +47,6 @@ struct OutgoingMessage
 // `datagram` comes from the vendor's writers and is trusted to be sound.
 OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram);
 
-// The participant named by the first INFO_DST of a datagram; zero: none is named.
-Rtps::GuidPrefix DestinationOf(std::span<const std::uint8_t> datagram);
-
 // Copies the datagram without its INFO_DST submessage, which takes 16 bytes.
 void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector<std::uint8_t> &to);
 

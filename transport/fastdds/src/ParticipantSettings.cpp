@@ -13,7 +13,6 @@
 #include <mutex>
 #include <utility>
 
-#include "GuardedUdp.h"
 #include "common/MulticastUse.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerAddress.h"
@@ -134,7 +133,7 @@ rtps::Locator_t SampleGroup(const TransportSettings &settings,
 }
 
 void AddTransports(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                   NetworkCalls calls, rtps::RTPSParticipantAttributes &attributes)
+                   GuardedUdpDescriptor::Settings guarded, rtps::RTPSParticipantAttributes &attributes)
 {
     auto udp = std::make_shared<UDPv4TransportDescriptor>();
     udp->sendBufferSize = SocketBuffer;
@@ -145,7 +144,6 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     udp->interfaceWhiteList = settings.Interfaces;
     udp->maxInitialPeersRange = ParticipantsPerPeer;
     attributes.useBuiltinTransports = false;
-    GuardedUdpDescriptor::Settings guarded;
     guarded.MaxDatagram = static_cast<std::uint32_t>(
         settings.Security ? std::max(settings.MaxDatagram, LargestHandshake) : settings.MaxDatagram);
     guarded.Mode = GuardMode(settings, attributes);
@@ -156,16 +154,8 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.OnSent = [log](bool samples, std::size_t datagrams, std::size_t bytes)
     { samples ? log->SentSamples(datagrams, bytes) : log->SentDiscovery(datagrams, bytes); };
     guarded.OnDropped = [log] { log->MalformedDatagram(); };
-    guarded.Announce = std::move(calls.Announce);
-    guarded.AnnounceAt = std::move(calls.AnnounceAt);
-    guarded.IsInGroup = std::move(calls.IsInGroup);
-    guarded.SendOwedAt = std::move(calls.SendOwedAt);
-    guarded.Owed = std::move(calls.Owed);
-    guarded.Turns = std::move(calls.Turns);
-    guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? std::move(calls.Meeting) : nullptr;
-    guarded.Authentication =
-        guarded.Mode == RtpsGuard::Mode::Protected ? std::move(calls.Authentication) : nullptr;
-    guarded.Goodbyes = std::move(calls.Goodbyes);
+    guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? guarded.Meeting : nullptr;
+    guarded.Authentication = guarded.Mode == RtpsGuard::Mode::Protected ? guarded.Authentication : nullptr;
     guarded.HasPeers = !settings.Peers.empty();
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;
     // GuardedUdp requests the first announcements after the very first, at doubling intervals.
@@ -229,7 +219,7 @@ void AddPeers(const TransportSettings &settings, rtps::RTPSParticipantAttributes
 
 rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSettings &settings,
                                                           const std::shared_ptr<SessionLog> &log,
-                                                          NetworkCalls calls)
+                                                          GuardedUdpDescriptor::Settings udp)
 {
     CheckSettings(settings);
     rtps::RTPSParticipantAttributes attributes;
@@ -257,7 +247,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     attributes.userData.assign(userData.begin(), userData.end());
     if (attributes.userTransports.empty())
     {
-        AddTransports(settings, log, std::move(calls), attributes);
+        AddTransports(settings, log, std::move(udp), attributes);
     }
     AddMulticast(settings, attributes);
     AddPeers(settings, attributes);

@@ -1,5 +1,7 @@
 #include "PayloadPool.h"
 
+#include <rabit/base/Assert.h>
+
 #include <cstring>
 #include <new>
 
@@ -126,6 +128,7 @@ bool PayloadPool::get_payload(Payload &data, IPayloadPool *& /*owner*/, Change &
 bool PayloadPool::release_payload(Change &change)
 {
     auto &payload = change.serializedPayload;
+    RABIT_ASSERT(payload.max_size <= _held);
     _held -= payload.max_size;
     Release({payload.data, payload.max_size});
     payload.data = nullptr;

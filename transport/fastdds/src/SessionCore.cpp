@@ -6,9 +6,11 @@
 #include <fastdds/rtps/builtin/data/WriterProxyData.h>
 #include <fastdds/rtps/participant/RTPSParticipant.h>
 #include <fastrtps/utils/IPLocator.h>
+#include <fastdds/rtps/common/VendorId_t.hpp>
 
 #include <algorithm>
-#include <chrono>
+#include <iterator>
+#include <random>
 #include <type_traits>
 #include <utility>
 
@@ -29,20 +31,24 @@ namespace
 constexpr std::uint32_t IsSecured = 1u << 31;
 constexpr std::uint32_t HasDiscoveryEncrypted = 1u << 1;
 
-// The prefix with which an identity begins.
-template <typename Bytes>
-rtps::GuidPrefix_t ToVendorPrefix(const Bytes &bytes)
-{
-    rtps::GuidPrefix_t result;
-    std::copy_n(bytes.begin(), rtps::GuidPrefix_t::size, result.value);
-    return result;
-}
-
 Rtps::GuidPrefix NameOf(const rtps::GuidPrefix_t &prefix)
 {
     Rtps::GuidPrefix name{};
     std::copy_n(prefix.value, name.size(), name.begin());
     return name;
+}
+
+// A prefix that no other participant has or had; the vendor would derive it from the number. Begins as the
+// vendor's do (OMG DDSI-RTPS 2.3, 9.3.1.5).
+rtps::GuidPrefix_t MakeGuidPrefix()
+{
+    std::random_device random;
+    std::uniform_int_distribution<int> byte(0, 255);
+    rtps::GuidPrefix_t prefix;
+    std::generate(std::begin(prefix.value), std::end(prefix.value),
+                  [&] { return static_cast<rtps::octet>(byte(random)); });
+    std::copy(rtps::c_VendorId_eProsima.begin(), rtps::c_VendorId_eProsima.end(), std::begin(prefix.value));
+    return prefix;
 }
 
 PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
@@ -84,33 +90,25 @@ RemoteEndpoint Described(const Proxy &proxy, const std::string &node)
 
 }  // namespace
 
-SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
-                         std::shared_ptr<DiscoveryTurns> turns)
-    : _log(std::make_shared<SessionLog>(settings)),
-      _topics(_log),
-      _peerGate(_log, "peer events"),
-      _announceGate(_log, "announcements"),
-      _onPeer(std::move(onPeer)),
+SessionCore::SessionCore(const TransportSettings &settings, const SessionContext &context)
+    : VendorCore(settings, context),
+      _announceGate(Log(), "announcements"),
       _multicast(IsMulticastForData(settings)),
-      _proof(settings, _log),
       _meeting(std::make_shared<Rtps::MeetingThread>(
           Rtps::Meeting::Settings{.Period = settings.AnnouncementPeriod,
                                   .Memory = _multicast ? settings.Memory : settings.Lease,
                                   .IsMulticast = _multicast},
-          turns))
+          context.Turns)),
+      _keys(settings.Security ? std::make_shared<KeyThread>(context.Turns) : nullptr)
 {
-    auto attributes = MakeParticipantAttributes(
-        settings, _log,
-        {.Announce = [this] { Announce(); },
-         .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
-         .IsInGroup = [this](const auto &prefix) { return IsInGroup(ToVendorPrefix(prefix)); },
-         .SendOwedAt = [this](auto time) { _owedTimer.At(time); },
-         .Owed = _owed,
-         .Turns = std::move(turns),
-         .Meeting = _meeting,
-         .Authentication = _authentication,
-         .Goodbyes = _goodbyes});
-    attributes.participantID = _number.Get();
+    auto attributes = MakeParticipantAttributes(settings, Log(),
+                                                {.Announce = [this] { Announce(); },
+                                                 .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
+                                                 .Keys = _keys,
+                                                 .Meeting = _meeting,
+                                                 .Authentication = _authentication,
+                                                 .Goodbyes = _goodbyes});
+    attributes.participantID = static_cast<std::int32_t>(_number.Get());
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
     // Disabled at first, so that nothing is discovered before _participant is known here.
@@ -122,12 +120,11 @@ SessionCore::SessionCore(const TransportSettings &settings, PeerHandler onPeer,
                              ": no free port, or no usable network interface" +
                              (settings.Security ? ", or it does not accept the keys" : ""));
     }
-    _announceTimer.Start(*_participant, [this] { Announce(); });
-    _owedTimer.Start(*_participant, [owed = _owed] { owed->Run(); });
+    _announceTimer.Start([this] { Announce(); });
     _participant.load()->enable();
     if (settings.Security && !KeyAddressees::Heed(*_participant))
     {
-        _log->Line("Fast DDS does not show its writer of keys: it says them to all");
+        Log()->Line("Fast DDS does not show its writer of keys: it says them to all");
     }
 }
 
@@ -136,16 +133,18 @@ SessionCore::~SessionCore()
     Close();
     _meeting->Stop();
     _authentication->Stop();
+    if (_keys != nullptr)
+    {
+        _keys->Stop();
+    }
     _announceTimer.Stop();
-    _owedTimer.Stop();
     rtps::RTPSDomain::removeRTPSParticipant(_participant);
 }
 
 void SessionCore::Close()
 {
-    _closed = true;
+    VendorCore::Close();
     _announceGate.Close();
-    _peerGate.Close();
 }
 
 bool SessionCore::IsOwn(const GuidPrefix &prefix) const
@@ -153,35 +152,9 @@ bool SessionCore::IsOwn(const GuidPrefix &prefix) const
     return prefix == _participant.load()->getGuid().guidPrefix;
 }
 
-std::shared_ptr<const PeerSession> SessionCore::IdentityOf(const WriterId &endpoint) const
-{
-    const GuidPrefix prefix = ToVendorPrefix(endpoint);
-    const std::lock_guard lock(_mutex);
-    return _peers.Find(prefix);
-}
-
-std::set<SessionCore::GuidPrefix> SessionCore::PrefixesOf(const std::string &node) const
-{
-    const std::lock_guard lock(_mutex);
-    const std::vector<GuidPrefix> prefixes = _peers.Of(node);
-    return {prefixes.begin(), prefixes.end()};
-}
-
-std::vector<PeerPlace> SessionCore::PeerPlaces() const
-{
-    const std::lock_guard lock(_mutex);
-    std::vector<PeerPlace> places;
-    for (const auto &[prefix, place] : _places)
-    {
-        places.push_back(place);
-    }
-    return places;
-}
-
 void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/,
                                          rtps::ParticipantDiscoveryInfo &&info)
 {
-    NotePlace(info);
     switch (info.status)
     {
         case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
@@ -189,34 +162,12 @@ void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/
             PeerAppeared(info.info);
             break;
         case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
-            PeerGone(info.info.m_guid.guidPrefix, PeerEvent::Kind::Left);
+            PeerGone(NameOf(info.info.m_guid.guidPrefix), PeerEvent::Kind::Left);
             break;
         case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT:
-            PeerGone(info.info.m_guid.guidPrefix, PeerEvent::Kind::Lost);
+            PeerGone(NameOf(info.info.m_guid.guidPrefix), PeerEvent::Kind::Lost);
             break;
     }
-}
-
-void SessionCore::NotePlace(const rtps::ParticipantDiscoveryInfo &info)
-{
-    const GuidPrefix &prefix = info.info.m_guid.guidPrefix;
-    const bool isGone = info.status == rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT ||
-                        info.status == rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT;
-    const std::lock_guard lock(_mutex);
-    if (_multicast && !isGone && !info.info.metatraffic_locators.multicast.empty())
-    {
-        _inGroup.insert(prefix);
-    }
-    else
-    {
-        _inGroup.erase(prefix);
-    }
-}
-
-bool SessionCore::IsInGroup(const GuidPrefix &prefix) const
-{
-    const std::lock_guard lock(_mutex);
-    return _inGroup.contains(prefix);
 }
 
 void SessionCore::Announce()
@@ -238,43 +189,42 @@ void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
     {
         return;
     }
-    const GuidPrefix &prefix = peer.m_guid.guidPrefix;
-    const Newcomer newcomer{.Who = std::make_shared<const ParticipantIdentity>(
-                                ParticipantIdentity{peer.m_participantName.to_string(), *incarnation}),
+    const Rtps::GuidPrefix name = NameOf(peer.m_guid.guidPrefix);
+    const Newcomer newcomer{.Who = {peer.m_participantName.to_string(), *incarnation},
                             .Place = PlaceOf(peer)};
-    if (_proof.IsWanted())
+    if (_security)
     {
-        if ((peer.plugin_security_attributes_ & IsSecured) != 0)
+        const auto protection = peer.plugin_security_attributes_;
+        if ((protection & IsSecured) != 0 &&
+            ((protection & HasDiscoveryEncrypted) != 0) != _security->Encrypts)
         {
-            _proof.Compare(newcomer.Who->Node,
-                           (peer.plugin_security_attributes_ & HasDiscoveryEncrypted) != 0);
+            Log()->OtherLevel(newcomer.Who.Node);
         }
         // Authentication confirms the first announcement: later ones may be forged.
-        const std::lock_guard lock(_mutex);
-        if (!_proven.contains(prefix))
+        const std::lock_guard lock(_provenMutex);
+        if (!_proven.contains(name))
         {
-            _unproven.emplace(prefix, newcomer);
+            _unproven.emplace(name, newcomer);
             return;
         }
     }
-    Admit(prefix, newcomer);
+    Appeared(name, newcomer.Who, newcomer.Place);
 }
 
 void SessionCore::onParticipantAuthentication(rtps::RTPSParticipant * /*participant*/,
                                               rtps::ParticipantAuthenticationInfo &&info)
 {
-    const GuidPrefix &prefix = info.guid.guidPrefix;
-    if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
-    {
-        const std::lock_guard lock(_mutex);
-        _proof.Refused(NameOfNewcomer(prefix));
-        return;
-    }
+    const Rtps::GuidPrefix name = NameOf(info.guid.guidPrefix);
     Newcomer newcomer;
     {
-        const std::lock_guard lock(_mutex);
-        _proven.insert(prefix);
-        const auto found = _unproven.find(prefix);
+        const std::lock_guard lock(_provenMutex);
+        const auto found = _unproven.find(name);
+        if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
+        {
+            Log()->Stranger(NameOfNewcomer(name));
+            return;
+        }
+        _proven.insert(name);
         if (found == _unproven.end())
         {
             return;
@@ -282,77 +232,36 @@ void SessionCore::onParticipantAuthentication(rtps::RTPSParticipant * /*particip
         newcomer = std::move(found->second);
         _unproven.erase(found);
     }
-    Admit(prefix, newcomer);
+    Appeared(name, newcomer.Who, newcomer.Place);
 }
 
-std::string SessionCore::NameOfNewcomer(const GuidPrefix &prefix) const
+std::string SessionCore::NameOfNewcomer(const Rtps::GuidPrefix &peer) const
 {
-    const auto found = _unproven.find(prefix);
-    return found == _unproven.end() ? "" : found->second.Who->Node;
+    const auto found = _unproven.find(peer);
+    return found == _unproven.end() ? "" : found->second.Who.Node;
 }
 
-void SessionCore::Admit(const GuidPrefix &prefix, const Newcomer &newcomer)
+void SessionCore::PeerGone(const Rtps::GuidPrefix &peer, PeerEvent::Kind how)
 {
-    const std::shared_ptr<const ParticipantIdentity> &identity = newcomer.Who;
-    if (!_proof.MayBe(identity->Node, std::span<const std::uint8_t, GuidPrefix::size>(prefix.value)))
-    {
-        return;
-    }
-    {
-        const std::lock_guard lock(_mutex);
-        if (_goodbyes->Has(NameOf(prefix), std::chrono::steady_clock::now()) ||
-            _peers.Add(prefix, *identity) == nullptr)
-        {
-            return;
-        }
-        _places.emplace(prefix, newcomer.Place);
-    }
-    _peerGate.Run(
-        [&]
-        {
-            if (_onPeer)
-            {
-                _onPeer({PeerEvent::Kind::Appeared, identity->Node, identity->Incarnation});
-            }
-        });
-}
-
-void SessionCore::PeerGone(const GuidPrefix &prefix, PeerEvent::Kind how)
-{
-    const Rtps::GuidPrefix name = NameOf(prefix);
     if (how == PeerEvent::Kind::Lost)
     {
-        _meeting->Lost(name);
+        _meeting->Lost(peer);
     }
-    else if (_meeting->WasEnded(name) || _authentication->WasForgotten(name))
+    else if (_meeting->WasEnded(peer) || _authentication->WasForgotten(peer))
     {
         how = PeerEvent::Kind::Lost;
     }
-    _authentication->Gone(name);
-    std::shared_ptr<const PeerSession> session;
+    _authentication->Gone(peer);
     {
-        const std::lock_guard lock(_mutex);
-        if (_authentication->WasForgotten(name))
+        const std::lock_guard lock(_provenMutex);
+        if (_authentication->WasForgotten(peer))
         {
-            _proof.Unfinished(NameOfNewcomer(prefix));
+            Log()->AuthenticationFailed(NameOfNewcomer(peer));
         }
-        _unproven.erase(prefix);
-        _proven.erase(prefix);
-        session = _peers.Remove(prefix);
-        if (session == nullptr)
-        {
-            return;
-        }
-        _places.erase(prefix);
+        _unproven.erase(peer);
+        _proven.erase(peer);
     }
-    _peerGate.Run(
-        [&]
-        {
-            if (_onPeer)
-            {
-                _onPeer({how, session->Node, session->Incarnation});
-            }
-        });
+    Gone(peer, how);
 }
 
 void SessionCore::onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::ReaderDiscoveryInfo &&info)
@@ -372,12 +281,12 @@ void SessionCore::NoteEndpoint(const Proxy &endpoint, bool isRemoved)
     const WriterId id = ToWriterId(endpoint.guid());
     if (isRemoved)
     {
-        _topics.RemoteGone(id);
+        Topics().RemoteGone(id);
     }
     else if (!IsOwn(endpoint.guid().guidPrefix))
     {
         const auto identity = IdentityOf(id);
-        _topics.RemoteAppeared(Described(endpoint, identity != nullptr ? identity->Node : ""));
+        Topics().RemoteAppeared(Described(endpoint, identity != nullptr ? identity->Node : ""));
     }
 }
 

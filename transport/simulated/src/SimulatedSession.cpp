@@ -1,10 +1,10 @@
 #include "SimulatedSession.h"
 
 #include <algorithm>
-#include <mutex>
 #include <utility>
 
 #include "common/SettingsCheck.h"
+#include "common/VendorWriter.h"
 
 namespace Rabit::Simulated
 {
@@ -12,91 +12,48 @@ namespace Rabit::Simulated
 namespace
 {
 
-constexpr std::size_t MaxSample = LargestSample;
-constexpr std::size_t HeaderSize = 4;
+// What a session shares with its writers.
+struct WriterCore
+{
+    const std::shared_ptr<SessionLog> &Log() const { return Participant->Log; }
+    bool IsClosed() const { return false; }  // NetworkCore::Write tells
 
-class SimulatedWriter final : public TransportWriter
+    std::shared_ptr<NetworkCore> Network;
+    ParticipantPtr Participant;
+};
+
+class SimulatedWriter final : public VendorWriter<WriterCore>
 {
 public:
-    SimulatedWriter(std::shared_ptr<NetworkCore> core, ParticipantPtr participant,
+    SimulatedWriter(const std::shared_ptr<NetworkCore> &network, const ParticipantPtr &participant,
                     const TopicDescription &topic, const TopicQos &qos,
                     const std::vector<std::string> &partitions)
-        : _core(std::move(core)),
-          _participant(std::move(participant)),
-          _topic(topic),
-          _bestEffort(qos.Reliability == Reliability::BestEffort),
-          _use(_participant->Topics, topic),
-          _state(_core->AddWriter(_participant, topic, qos, partitions))
+        : VendorWriter(std::make_shared<WriterCore>(WriterCore{network, participant}), topic, qos),
+          _use(participant->Topics, topic),
+          _state(network->AddWriter(participant, topic, qos, partitions))
     {
     }
-    ~SimulatedWriter() override { _core->RemoveWriter(*_participant, *_state); }
+    ~SimulatedWriter() override { _core->Network->RemoveWriter(*_core->Participant, *_state); }
 
-    WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime) override
-    {
-        return Send(sample, sourceTime, true);
-    }
-
-    WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime) override
-    {
-        return Send(sample, sourceTime, true, nullptr, true);
-    }
-    std::size_t HeldBytes() const override
-    {
-        const std::lock_guard lock(_mutex);
-        // At least 1: a datagram without a receiver would otherwise look as if none were held.
-        return _held == nullptr
-                   ? 0
-                   : std::max<std::size_t>(_core->BytesOfPart(*_participant, *_state, *_held), 1);
-    }
-    void SendHeld() override
-    {
-        const std::lock_guard lock(_mutex);
-        if (_held != nullptr)
-        {
-            SendPart();
-        }
-    }
-
-    WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
-                        std::int64_t sourceTime) override
-    {
-        if (_bestEffort && !_topic.KeyOf)
-        {
-            return Send(sample, sourceTime, true, &node);
-        }
-        return Fail("only best-effort writers of topics without a key write to one node");
-    }
-
-    WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) override
-    {
-        if (!_topic.KeyOf)
-        {
-            return Fail("it has no key, so nothing of it can be disposed");
-        }
-        return Send(sample, sourceTime, false);
-    }
-
-    int MatchedReaders() const override { return _core->MatchedReaders(*_state); }
-    int Destinations() const override { return _core->Destinations(*_participant, *_state); }
+    int MatchedReaders() const override { return _core->Network->MatchedReaders(*_state); }
+    int Destinations() const override { return _core->Network->Destinations(*_core->Participant, *_state); }
 
 private:
-    WriteResult Fail(const char *why, WriteResult result = WriteResult::Failed)
+    WriteResult Send(const SampleEncoder &sample, std::int64_t sourceTime, bool dispose) override
     {
-        _participant->Log->WriteFailed(_topic.Name, why);
-        return result;
+        return Send(sample, sourceTime, dispose, nullptr);
     }
-
-    WriteResult Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool alive,
-                     const std::string *node = nullptr, bool hold = false)
+    WriteResult SendTo(const std::string &node, const SampleEncoder &sample, std::int64_t sourceTime) override
+    {
+        return Send(sample, sourceTime, false, &node);
+    }
+    WriteResult Send(const SampleEncoder &encoder, std::int64_t sourceTime, bool dispose,
+                     const std::string *node)
     {
         const std::size_t size = encoder.EncodedSize();
-        if (size > MaxSample)
+        if (const auto refused = Refuse(size))
         {
-            return Fail("the sample is larger than 64 MiB", WriteResult::TooLarge);
-        }
-        if (size < HeaderSize)
-        {
-            return Fail("the encoded sample is shorter than its header");
+            return *refused;
         }
         const auto sample = std::make_shared<Sample>();
         sample->Bytes.resize(size);
@@ -108,55 +65,41 @@ private:
         {
             return Fail("the encoded sample has no readable key");
         }
-        const std::size_t datagram = _participant->Settings.MaxDatagram;
+        const std::size_t datagram = _core->Participant->Settings.MaxDatagram;
         sample->SourceTime = sourceTime;
-        sample->Alive = alive;
+        sample->Alive = !dispose;
         sample->Datagrams = static_cast<std::uint32_t>((size + datagram - 1) / datagram);
-        if (!alive)
+        if (dispose)
         {
             sample->Bytes.clear();
             sample->Datagrams = 1;
         }
-        const std::lock_guard lock(_mutex);
-        while (_held != nullptr)
-        {
-            SendPart();
-        }
-        if (hold && sample->Datagrams > 1)
-        {
-            _held = sample;
-            _partsSent = 0;
-            return SendPart() ? WriteResult::Ok : Fail("the session is closed");
-        }
-        if (!_core->Write(*_participant, *_state, sample, node))
-        {
-            return Fail("the session is closed");
-        }
-        return WriteResult::Ok;
+        const bool isSent = HeldDatagrams::OfThisThread() != nullptr && sample->Datagrams > 1
+                                ? SendInParts(sample, *HeldDatagrams::OfThisThread())
+                                : _core->Network->Write(*_core->Participant, *_state, sample, node);
+        return isSent ? WriteResult::Ok : Fail("the session is closed");
     }
-
-    // Sends the next part of _held. Requires _mutex.
-    bool SendPart()
+    bool SendInParts(const std::shared_ptr<Sample> &sample, HeldDatagrams::Scope &held)
     {
-        if (_partsSent + 1 < _held->Datagrams)
+        // At least 1: a datagram without a receiver would otherwise look as if none were held.
+        const std::size_t bytes =
+            std::max<std::size_t>(_core->Network->BytesOfPart(*_core->Participant, *_state, *sample), 1);
+        const std::uint32_t last = sample->Datagrams - 1;
+        bool isSent = true;
+        for (std::uint32_t part = 0; part <= last && isSent; ++part)
         {
-            const bool sent = _core->WritePart(*_participant, *_state, *_held);
-            ++_partsSent;
-            _held = sent ? _held : nullptr;
-            return sent;
+            const auto send = [core = _core, state = _state, sample, isLast = part == last, last]
+            {
+                return isLast ? core->Network->Write(*core->Participant, *state, sample, nullptr, last)
+                              : core->Network->WritePart(*core->Participant, *state, *sample);
+            };
+            isSent = held.Keep(bytes, send) || send();
         }
-        return _core->Write(*_participant, *_state, std::exchange(_held, nullptr), nullptr, _partsSent);
+        return isSent;
     }
 
-    const std::shared_ptr<NetworkCore> _core;
-    const ParticipantPtr _participant;
-    const TopicDescription _topic;
-    const bool _bestEffort;
     const TopicRegistry::Use _use;
     const WriterPtr _state;
-    mutable std::mutex _mutex;  // guards the members below
-    std::shared_ptr<Sample> _held;
-    std::uint32_t _partsSent = 0;  // of _held
 };
 
 class SimulatedReader final : public TransportReader

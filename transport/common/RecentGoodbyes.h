@@ -1,13 +1,12 @@
 // Remembers the participants that said goodbye.
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
-#include <deque>
 #include <mutex>
 
-#include "guard/RtpsMessage.h"
+#include "common/RecentMap.h"
+#include "common/Rtps.h"
 
 namespace Rabit::Rtps
 {
@@ -32,16 +31,10 @@ public:
     void Note(const GuidPrefix &peer, TimePoint now)
     {
         const std::lock_guard lock(_mutex);
-        std::erase_if(_goodbyes, [&](const Goodbye &each) { return now - each.At >= Overtaken; });
-        if (IsNoted(peer, now))
+        if (!IsNoted(peer, now))
         {
-            return;
+            _goodbyes.Put(peer, now);
         }
-        if (_goodbyes.size() >= Most)
-        {
-            _goodbyes.pop_front();
-        }
-        _goodbyes.push_back({peer, now});
     }
     bool Has(const GuidPrefix &peer, TimePoint now) const
     {
@@ -50,21 +43,14 @@ public:
     }
 
 private:
-    struct Goodbye
-    {
-        GuidPrefix Peer{};
-        TimePoint At{};
-    };
-
     bool IsNoted(const GuidPrefix &peer, TimePoint now) const
     {
-        return std::any_of(_goodbyes.begin(), _goodbyes.end(),
-                           [&](const Goodbye &each)
-                           { return each.Peer == peer && now - each.At < Overtaken; });
+        const TimePoint *const at = _goodbyes.Find(peer);
+        return at != nullptr && now - *at < Overtaken;
     }
 
     mutable std::mutex _mutex;
-    std::deque<Goodbye> _goodbyes;  // guarded by _mutex; the oldest first
+    RecentMap<GuidPrefix, TimePoint> _goodbyes{Most};  // guarded by _mutex
 };
 
 }  // namespace Rabit::Rtps

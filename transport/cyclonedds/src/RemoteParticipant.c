@@ -1,10 +1,27 @@
-#include "PeerAddresses.h"
+#include "RemoteParticipant.h"
 
 #include <dds/ddsi/ddsi_domaingv.h>
 #include <dds/ddsi/ddsi_entity_index.h>
 #include <dds/ddsi/ddsi_proxy_participant.h>
 #include <dds/ddsi/q_addrset.h>
+#include <dds/ddsi/q_lease.h>
 #include <dds/ddsi/q_thread.h>
+#include <dds/ddsrt/time.h>
+
+static const struct ddsi_proxy_participant *Find(const ddsi_guid_t *participant)
+{
+    /* The vendor's thread that calls the listener works for one domain. */
+    const struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&lookup_thread_state()->gv);
+    return domain == NULL ? NULL : entidx_lookup_proxy_participant_guid(domain->entity_index, participant);
+}
+
+bool RabitCycloneLeaseHasExpired(const ddsi_guid_t *participant)
+{
+    const struct ddsi_proxy_participant *known = Find(participant);
+    /* The lease that each message of the participant renews. */
+    const struct lease *lease = known == NULL ? NULL : ddsrt_atomic_ldvoidp(&known->minl_auto);
+    return lease != NULL && (int64_t)ddsrt_atomic_ld64(&lease->tend) <= ddsrt_time_elapsed().v;
+}
 
 struct Visit
 {
@@ -29,21 +46,13 @@ void RabitCyclonePeerAddresses(const ddsi_guid_t *participant,
                                void (*found)(const struct RabitCyclonePlace *place, void *argument),
                                void *argument)
 {
-    /* The vendor's thread that calls the listener works for one domain. */
-    const struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&lookup_thread_state()->gv);
-    if (domain == NULL)
+    const struct ddsi_proxy_participant *known = Find(participant);
+    if (known != NULL)
     {
-        return;
+        struct Visit visit = {found, argument};
+        addrset_forall(known->as_meta, VisitLocator, &visit);
+        addrset_forall(known->as_default, VisitLocator, &visit);
     }
-    const struct ddsi_proxy_participant *known =
-        entidx_lookup_proxy_participant_guid(domain->entity_index, participant);
-    if (known == NULL)
-    {
-        return;
-    }
-    struct Visit visit = {found, argument};
-    addrset_forall(known->as_meta, VisitLocator, &visit);
-    addrset_forall(known->as_default, VisitLocator, &visit);
 }
 
 unsigned RabitCycloneMostInterfaces(void)

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <rabit/transport/DiscoveryTurns.h>
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "common/DueThread.h"
+#include "common/KeyExchangeOutbox.h"
+#include "common/RecentNumbers.h"
+
+namespace Rabit
+{
+
+// Sends the datagrams of a session's key exchanges when a KeyExchangeOutbox releases them. Route: a way from
+// one of the vendor's sockets to an address. Thread-safe.
+template <typename Route, typename Less = std::less<Route>>
+class KeyExchangeThread final : public DueThread
+{
+public:
+    // Called without a lock of this object, on the thread or in Put.
+    using Send = std::function<void(const Route &route, std::span<const std::uint8_t> datagram)>;
+
+    explicit KeyExchangeThread(std::shared_ptr<DiscoveryTurns> turns,
+                               KeyExchangeOutbox outbox = KeyExchangeOutbox())
+        : _turns(std::move(turns)), _exchanges(std::move(outbox))
+    {
+    }
+    ~KeyExchangeThread() { Stop(); }
+
+    // Call before Put. Send is not called after Stop.
+    void Start(Send send)
+    {
+        _send = std::move(send);
+        DueThread::Start();
+    }
+    // Takes a datagram that the vendor wants to send. Returns false if it should be sent unchanged. Datagrams
+    // that may go now are sent on the calling thread. The vendor's locks may be held.
+    bool Put(std::span<const std::uint8_t> datagram, const KeyExchange &what, const Route &route)
+    {
+        std::unique_lock lock(_mutex);
+        if (IsStopped())
+        {
+            return false;
+        }
+        _self = what.From;
+        _exchanges.SetRate(_turns->KeyRate());
+        if (!_exchanges.Put(datagram, what, _routes.Of(route).first, Clock::now()))
+        {
+            return false;
+        }
+        Work(lock);
+        WakeIfEarlier();
+        return true;
+    }
+    // Takes a received datagram. Returns false if the vendor should not see it.
+    bool Received(const KeyExchange &what)
+    {
+        const std::lock_guard lock(_mutex);
+        const bool isHeard = what.To != _self || _exchanges.Received(what, Clock::now());
+        WakeIfEarlier();
+        return isHeard;
+    }
+    // True if it is for the own participant.
+    bool IsForUs(const KeyExchange &what) const
+    {
+        const std::lock_guard lock(_mutex);
+        return what.To == _self;
+    }
+    // As in KeyExchangeOutbox.
+    bool IsWaiting(const KeyExchange::Prefix &peer) const
+    {
+        const std::lock_guard lock(_mutex);
+        return _exchanges.IsWaiting(peer);
+    }
+    void Forget(const KeyExchange::Prefix &peer)
+    {
+        const std::lock_guard lock(_mutex);
+        _exchanges.Forget(peer);
+    }
+
+private:
+    std::optional<Clock::time_point> Due() override { return _exchanges.Due(); }
+    void Work(std::unique_lock<std::mutex> &lock) override
+    {
+        for (const KeyExchangeOutbox::Datagram &datagram : _exchanges.TakeDue(Clock::now()))
+        {
+            // Null: thousands of other routes have come since.
+            if (const Route *const known = _routes.KeyOf(datagram.Route))
+            {
+                const Route route = *known;
+                lock.unlock();
+                _send(route, datagram.Bytes);
+                lock.lock();
+            }
+        }
+    }
+
+    const std::shared_ptr<DiscoveryTurns> _turns;
+    Send _send;
+    KeyExchangeOutbox _exchanges;        // guarded by _mutex, like those below
+    KeyExchange::Prefix _self{};         // known once something was exchanged
+    RecentNumbers<Route, Less> _routes;  // of _exchanges
+};
+
+}  // namespace Rabit

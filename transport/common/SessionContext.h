@@ -1,0 +1,22 @@
+#pragma once
+
+#include <rabit/transport/Transport.h>
+
+#include <memory>
+
+#include "common/SessionLog.h"
+#include "common/TopicRegistry.h"
+
+namespace Rabit
+{
+
+// What a RejoiningSession shares with the backend's sessions that it opens one after the other.
+struct SessionContext
+{
+    std::shared_ptr<SessionLog> Log;
+    std::shared_ptr<TopicRegistry> Topics;
+    PeerHandler OnPeer;  // never empty
+    std::shared_ptr<DiscoveryTurns> Turns;
+};
+
+}  // namespace Rabit

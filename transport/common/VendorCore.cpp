@@ -1,0 +1,95 @@
+#include "common/VendorCore.h"
+
+#include <utility>
+
+#include "common/RtpsReader.h"
+
+namespace Rabit
+{
+
+VendorCore::VendorCore(const TransportSettings &settings, const SessionContext &context)
+    : _context(context), _security(settings.Security), _peerGate(context.Log, "peer events")
+{
+}
+
+void VendorCore::Close()
+{
+    _closed = true;
+    _peerGate.Close();
+}
+
+std::shared_ptr<const PeerSession> VendorCore::IdentityOf(const WriterId &endpoint) const
+{
+    const Rtps::GuidPrefix participant = Rtps::PrefixOf(endpoint);
+    const std::lock_guard lock(_mutex);
+    if (Identity known = _peers.Find(participant))
+    {
+        return known;
+    }
+    const Identity *const gone = _gone.Find(participant);
+    return gone == nullptr ? nullptr : *gone;
+}
+
+std::vector<Rtps::GuidPrefix> VendorCore::ParticipantsOf(const std::string &node) const
+{
+    const std::lock_guard lock(_mutex);
+    return _peers.Of(node);
+}
+
+std::vector<PeerPlace> VendorCore::PeerPlaces() const
+{
+    const std::lock_guard lock(_mutex);
+    std::vector<PeerPlace> places;
+    for (const auto &[participant, place] : _places)
+    {
+        places.push_back(place);
+    }
+    return places;
+}
+
+void VendorCore::Appeared(const Rtps::GuidPrefix &participant, const ParticipantIdentity &who,
+                          const PeerPlace &place)
+{
+    if (_security && _security->MayBe && !_security->MayBe(who.Node, participant))
+    {
+        Log()->Impostor(who.Node);
+        return;
+    }
+    Identity identity;
+    {
+        const std::lock_guard lock(_mutex);
+        identity = _goodbyes->Has(participant, std::chrono::steady_clock::now())
+                       ? nullptr
+                       : _peers.Add(participant, who);
+        if (identity == nullptr)
+        {
+            return;
+        }
+        _places.insert_or_assign(participant, place);
+    }
+    Tell(PeerEvent::Kind::Appeared, identity);
+}
+
+std::shared_ptr<const PeerSession> VendorCore::Gone(const Rtps::GuidPrefix &participant, PeerEvent::Kind how)
+{
+    Identity identity;
+    {
+        const std::lock_guard lock(_mutex);
+        identity = _peers.Remove(participant);
+        if (identity == nullptr)
+        {
+            return nullptr;
+        }
+        _places.erase(participant);
+        _gone.Put(participant, identity);
+    }
+    Tell(how, identity);
+    return identity;
+}
+
+void VendorCore::Tell(PeerEvent::Kind what, const Identity &who)
+{
+    Run([this, what, who] { _peerGate.Run([&] { _context.OnPeer({what, who->Node, who->Incarnation}); }); });
+}
+
+}  // namespace Rabit
