@@ -10,7 +10,7 @@
 namespace Rabit
 {
 
-// What a RejoiningSession shares with the backend's sessions that it opens one after the other.
+// State that a RejoiningSession shares with the sessions of the backend that it opens one after the other.
 struct SessionContext
 {
     std::shared_ptr<SessionLog> Log;

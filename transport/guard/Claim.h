@@ -5,7 +5,7 @@
 namespace Rabit::Rtps
 {
 
-// What an unauthenticated peer claims of one thing: the accepted value, and the last other one. Another value
+// The accepted value of one thing that an unauthenticated peer claims, and the last other value. Another value
 // is accepted when it came OftenEnough in a row, so that an honest peer can change, and one forged or damaged
 // datagram changes nothing. Not thread-safe.
 template <typename Value>

@@ -12,7 +12,7 @@ namespace Rabit::Simulated
 namespace
 {
 
-// What a session shares with its writers.
+// State that a session shares with its writers.
 struct WriterCore
 {
     const std::shared_ptr<SessionLog> &Log() const { return Participant->Log; }
