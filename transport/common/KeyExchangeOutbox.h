@@ -115,6 +115,8 @@ public:
     // Drops all that waits for a peer: the exchange begins anew.
     void Forget(const KeyExchange::Prefix &peer);
 
+    // How long peers take to answer; zero: unknown.
+    Duration AnswerTime() const { return _answerTime.value_or(Duration(0)); }
     std::size_t Window() const { return _window; }
     // Bytes that are sent and not answered.
     std::size_t Unanswered() const { return _unanswered; }

@@ -77,6 +77,11 @@ public:
         const std::lock_guard lock(_mutex);
         return _exchanges.IsWaiting(peer);
     }
+    KeyExchangeOutbox::Duration AnswerTime() const
+    {
+        const std::lock_guard lock(_mutex);
+        return _exchanges.AnswerTime();
+    }
     void Forget(const KeyExchange::Prefix &peer)
     {
         const std::lock_guard lock(_mutex);

@@ -52,11 +52,17 @@ void AuthenticationRetries::Exchanged(const GuidPrefix &peer, Step step, bool is
     {
         return;
     }
-    const std::uint32_t bit = 1u << (2 * static_cast<unsigned>(step) + (isSent ? 1 : 0));
-    if ((found->second.Steps & bit) == 0)
+    Peer &known = found->second;
+    if (step == Step::Keys && known.Keys < MostKeys)
     {
-        found->second.Steps |= bit;
-        found->second.ProgressAt = now;
+        ++known.Keys;
+        known.ProgressAt = now;
+    }
+    const std::uint32_t bit = 1u << (2 * static_cast<unsigned>(step) + (isSent ? 1 : 0));
+    if ((known.Steps & bit) == 0)
+    {
+        known.Steps |= bit;
+        known.ProgressAt = now;
     }
 }
 
@@ -69,7 +75,8 @@ void AuthenticationRetries::Gone(const GuidPrefix &peer)
     }
 }
 
-std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::DueOf(const Peer &peer)
+std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::DueOf(const Peer &peer,
+                                                                             Duration answerTime)
 {
     if (!peer.IsKnown || peer.IsAuthenticated || peer.AnnouncedAt <= peer.ProgressAt)
     {
@@ -77,16 +84,17 @@ std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::DueOf(con
     }
     constexpr int MostDoublings = 8;
     const bool hasBegun = peer.Steps != 0 || peer.IsContradicted;
-    const std::chrono::seconds first = hasBegun ? Stalled : NotBegun;
-    return peer.ProgressAt + std::min(first * (1 << std::min(peer.Attempts, MostDoublings)), Longest);
+    const Duration first = (hasBegun ? 1 : NotBegun) * std::max<Duration>(Stalled, AnswerTimes * answerTime);
+    return peer.ProgressAt +
+           std::min<Duration>(first * (1 << std::min(peer.Attempts, MostDoublings)), Longest);
 }
 
-std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::Due() const
+std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::Due(Duration answerTime) const
 {
     std::optional<TimePoint> due;
     for (const auto &[prefix, peer] : _peers)
     {
-        if (const auto of = DueOf(peer))
+        if (const auto of = DueOf(peer, answerTime))
         {
             due = due ? std::min(*due, *of) : of;
         }
@@ -94,12 +102,12 @@ std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::Due() con
     return due;
 }
 
-std::vector<GuidPrefix> AuthenticationRetries::Doubtful(TimePoint now) const
+std::vector<GuidPrefix> AuthenticationRetries::Doubtful(TimePoint now, Duration answerTime) const
 {
     std::vector<GuidPrefix> found;
     for (const auto &[prefix, peer] : _peers)
     {
-        if (const auto due = DueOf(peer); due && *due <= now)
+        if (const auto due = DueOf(peer, answerTime); due && *due <= now)
         {
             found.push_back(prefix);
         }

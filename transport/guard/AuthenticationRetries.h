@@ -32,12 +32,18 @@ public:
     using TimePoint = std::chrono::steady_clock::time_point;
     using Step = KeyExchange::Step;
 
-    // Time without progress until an attempt has failed: twice as long as a repeated message of a handshake
-    // waits on a thin channel (KeyExchangeOutbox::LongestGap), and a little more. Doubles with each attempt.
-    static constexpr std::chrono::seconds Stalled{20};
-    // The same if nothing has begun. On a thin channel the other side's requests wait for other exchanges.
-    static constexpr std::chrono::seconds NotBegun{60};
+    using Duration = std::chrono::steady_clock::duration;
+
+    // Time without progress until an attempt has failed, if answers take no time: more than three times the
+    // longest interval between repetitions (KeyExchangeOutbox::LongestGap). On a thin channel it is so many
+    // answer times. Doubles with each attempt.
+    static constexpr std::chrono::seconds Stalled{30};
+    static constexpr int AnswerTimes = 16;
+    // So many times as long if nothing has begun: the other side's requests wait for other exchanges.
+    static constexpr int NotBegun = 3;
     static constexpr std::chrono::seconds Longest{300};
+    // Datagrams of keys that count as progress in one attempt. A pair exchanges some twenty.
+    static constexpr int MostKeys = 64;
     // As many as the guard knows (KnownPeers). When there are more, the one whose announcement came longest
     // ago is forgotten here.
     static constexpr std::size_t Most = 1024;
@@ -58,16 +64,16 @@ public:
     // participant whose handshake confirms its addresses is authenticated, so that a forged address does not
     // last. `addresses` must be sorted.
     bool Signs(const GuidPrefix &peer, const std::vector<std::uint64_t> &addresses);
-    // A message of that step was received from the participant, or sent to it. Only the first of each step in
-    // an attempt counts.
+    // A message of that step was received from the participant, or sent to it. Of a handshake only the first
+    // of each step in an attempt counts, and MostKeys datagrams of keys.
     void Exchanged(const GuidPrefix &peer, Step step, bool isSent, TimePoint now);
     // The vendor does not know the participant any more.
     void Gone(const GuidPrefix &peer);
 
-    // When a participant may have to be forgotten; none: no time.
-    std::optional<TimePoint> Due() const;
+    // When a participant may have to be forgotten, if answers take that long; none: no time.
+    std::optional<TimePoint> Due(Duration answerTime) const;
     // The participants to look at now. For each, one of the next three is to be called.
-    std::vector<GuidPrefix> Doubtful(TimePoint now) const;
+    std::vector<GuidPrefix> Doubtful(TimePoint now, Duration answerTime) const;
     void IsAuthenticated(const GuidPrefix &peer);
     // A message to it has not been sent yet: it gets more time.
     void IsWaiting(const GuidPrefix &peer, TimePoint now);
@@ -85,12 +91,13 @@ private:
         bool IsAuthenticated = false;
         bool IsContradicted = false;  // since it is known
         std::uint32_t Steps = 0;      // of this attempt: a bit for each step, sent or received
+        int Keys = 0;                 // datagrams in this attempt, up to MostKeys
         int Attempts = 0;             // that have failed
         TimePoint ProgressAt{};
         TimePoint AnnouncedAt{};
     };
 
-    static std::optional<TimePoint> DueOf(const Peer &peer);
+    static std::optional<TimePoint> DueOf(const Peer &peer, Duration answerTime);
     void MakeRoom();
 
     std::map<GuidPrefix, Peer> _peers;

@@ -32,7 +32,7 @@ bool AuthenticationThread::Announced(const GuidPrefix &peer, const Authenticatio
     const std::lock_guard lock(_mutex);
     const bool isNew = _retries.Announced(peer, content, Clock::now());
     // Nothing is due within seconds of now, so the thread need only be woken from a sleep without an end.
-    if (_sleeps && _retries.Due())
+    if (_sleeps && _retries.Due({}))
     {
         _changed.notify_one();
     }
@@ -80,7 +80,14 @@ void AuthenticationThread::Run()
     std::unique_lock lock(_mutex);
     while (!_stop)
     {
-        const auto due = _retries.Due();
+        lock.unlock();
+        const auto answerTime = _calls.AnswerTime();
+        lock.lock();
+        const auto due = _retries.Due(answerTime);
+        if (_stop)
+        {
+            return;
+        }
         if (!due)
         {
             _sleeps = true;
@@ -94,7 +101,7 @@ void AuthenticationThread::Run()
             _changed.wait_until(lock, std::min(*due, Clock::now() + std::chrono::seconds(1)));
             continue;
         }
-        for (const GuidPrefix &peer : _retries.Doubtful(Clock::now()))
+        for (const GuidPrefix &peer : _retries.Doubtful(Clock::now(), answerTime))
         {
             if (!_stop)
             {

@@ -25,6 +25,8 @@ public:
         std::function<bool(const GuidPrefix &)> IsAuthenticated;
         // True if a message of the handshake with it waits to be sent for the first time.
         std::function<bool(const GuidPrefix &)> IsWaiting;
+        // How long participants take to answer (KeyExchangeOutbox).
+        std::function<Clock::duration()> AnswerTime;
         // Makes the vendor forget the participant, and the participant this node. `number`: of the goodbye.
         std::function<void(const GuidPrefix &, std::int64_t number)> Forget;
         // Drops all that waits to be sent to the participant. Called in Gone.

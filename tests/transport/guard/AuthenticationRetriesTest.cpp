@@ -20,7 +20,7 @@ class AuthenticationRetriesTest : public testing::Test
 {
 protected:
     static constexpr auto Stalled = AuthenticationRetries::Stalled;
-    static constexpr auto NotBegun = AuthenticationRetries::NotBegun;
+    static constexpr auto NotBegun = AuthenticationRetries::NotBegun * Stalled;
 
     bool Announce(std::uint64_t digest = 1, const GuidPrefix &peer = Sender)
     {
@@ -34,7 +34,7 @@ protected:
             Announce();
         }
     }
-    bool IsDoubtful() const { return Retries.Doubtful(Now) == std::vector{Sender}; }
+    bool IsDoubtful() const { return Retries.Doubtful(Now, AnswerTime) == std::vector{Sender}; }
     // How long the participant, which announces itself, is left alone from now on.
     std::chrono::seconds LeftAlone()
     {
@@ -55,6 +55,7 @@ protected:
 
     AuthenticationRetries Retries;
     AuthenticationRetries::TimePoint Now{1h};
+    std::chrono::seconds AnswerTime{0};
 };
 
 TEST_F(AuthenticationRetriesTest, AParticipantWhoseHandshakeStallsIsForgotten)
@@ -65,7 +66,7 @@ TEST_F(AuthenticationRetriesTest, AParticipantWhoseHandshakeStallsIsForgotten)
     EXPECT_FALSE(Retries.WasForgotten(Sender));
     Retries.Forget(Sender);
     EXPECT_TRUE(Retries.WasForgotten(Sender));
-    EXPECT_FALSE(Retries.Due());
+    EXPECT_FALSE(Retries.Due(AnswerTime));
     EXPECT_TRUE(Announce());
     EXPECT_FALSE(Retries.WasForgotten(Sender));
 }
@@ -86,7 +87,7 @@ TEST_F(AuthenticationRetriesTest, AnAuthenticatedParticipantIsNeverForgotten)
     EXPECT_FALSE(Retries.Signs(Sender, {30}));
     Retries.Exchanged(Sender, Step::Request, false, Now);
     AnnounceFor(1h);
-    EXPECT_FALSE(Retries.Due());
+    EXPECT_FALSE(Retries.Due(AnswerTime));
 }
 
 TEST_F(AuthenticationRetriesTest, AParticipantThatTheVendorHasLostBeginsAnew)
@@ -118,6 +119,26 @@ TEST_F(AuthenticationRetriesTest, RepetitionsAndControlGiveItNoMoreTime)
     EXPECT_EQ(LeftAlone(), 1s);
 }
 
+TEST_F(AuthenticationRetriesTest, DatagramsOfKeysGiveItMoreTimeUpToABound)
+{
+    Announce();
+    for (int i = 0; i <= AuthenticationRetries::MostKeys; ++i)
+    {
+        EXPECT_FALSE(IsDoubtful());
+        AnnounceFor(Stalled - 1s);
+        Retries.Exchanged(Sender, Step::Keys, true, Now);
+    }
+    EXPECT_EQ(LeftAlone(), 1s);
+}
+
+TEST_F(AuthenticationRetriesTest, SlowAnswersGiveItMoreTime)
+{
+    AnswerTime = 3s;
+    Announce();
+    Retries.Exchanged(Sender, Step::Request, true, Now);
+    EXPECT_EQ(LeftAlone(), 48s);
+}
+
 TEST_F(AuthenticationRetriesTest, AMessageThatWaitsToBeSentGivesItMoreTime)
 {
     Announce();
@@ -131,7 +152,7 @@ TEST_F(AuthenticationRetriesTest, EachAttemptIsTwiceAsLongUpToABound)
 {
     Announce();
     Retries.Exchanged(Sender, Step::Request, true, Now);
-    for (const auto expected : {20s, 40s, 80s, 160s, 300s, 300s})
+    for (const auto expected : {30s, 60s, 120s, 240s, 300s, 300s})
     {
         EXPECT_EQ(LeftAlone(), expected);
         BeginAnew();
@@ -155,7 +176,7 @@ TEST_F(AuthenticationRetriesTest, AParticipantThatAnnouncesItselfNoMoreIsNotTrie
     Announce();
     Retries.Exchanged(Sender, Step::Request, true, Now);
     Now += 1h;
-    EXPECT_FALSE(Retries.Due());
+    EXPECT_FALSE(Retries.Due(AnswerTime));
 }
 
 TEST_F(AuthenticationRetriesTest, AnAnnouncementWithOtherContentIsRefusedUntilTheParticipantIsForgotten)

@@ -77,10 +77,13 @@ TEST(AuthenticationThreadTest, AStoppedThreadMakesNoCall)
     AuthenticationThread thread;
     thread.Start({.IsAuthenticated = [](const auto &) { return false; },
                   .IsWaiting = [](const auto &) { return false; },
-                  .Forget = [](const auto &, auto) { ADD_FAILURE(); }});
+                  .AnswerTime = [] { return AuthenticationThread::Clock::duration(0); },
+                  .Forget = [](const auto &, auto) { ADD_FAILURE(); },
+                  .Drop = [](const auto &) { ADD_FAILURE(); }});
     thread.Announced(Sender, {});
     thread.Stop();
     thread.Announced(Sender, {});
+    thread.Gone(Sender);
     EXPECT_FALSE(thread.WasForgotten(Sender));
 }
 

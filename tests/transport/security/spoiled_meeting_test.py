@@ -32,7 +32,7 @@ SECURITY = (0x1001, 0x1002, 0x1005, 0x1006)
 UNICAST_LOCATORS = (0x31, 0x32)
 NOBODYS_PORT = 9
 DATA_FRAGMENT = 0x16
-# A minute's: three times as long as an attempt to meet takes (AuthenticationRetries::Stalled).
+# A minute's: twice as long as an attempt to meet takes (AuthenticationRetries::Stalled).
 SAMPLES_UNDER_ATTACK = 600
 
 

@@ -461,6 +461,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     {
         _authentication.Start({.IsAuthenticated = [this](const auto &peer) { return HasKeysOf(peer); },
                                .IsWaiting = [this](const auto &peer) { return _keys.IsWaiting(peer); },
+                               .AnswerTime = [this] { return _keys.AnswerTime(); },
                                .Forget = [this](const auto &peer, auto /*number*/) { Forget(peer); },
                                .Drop = [this](const auto &peer) { _keys.Forget(peer); }});
     }

@@ -109,6 +109,7 @@ public:
                                        return !own.empty() && KeyAddressees::HasKeysOf(SenderOf(own), peer);
                                    },
                                    .IsWaiting = [this](const auto &peer) { return Keys()->IsWaiting(peer); },
+                                   .AnswerTime = [this] { return Keys()->AnswerTime(); },
                                    .Forget = [this](const auto &peer, auto number) { Forget(peer, number); },
                                    .Drop = [this](const auto &peer) { Keys()->Forget(peer); }});
         }
