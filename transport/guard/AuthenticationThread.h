@@ -39,7 +39,7 @@ public:
     AuthenticationThread &operator=(const AuthenticationThread &) = delete;
 
     void Start(Calls calls);
-    // When this returns, no call is in progress and none will be made. A call must not stop the thread.
+    // When this returns, no call is in progress, except in Gone, and none will be made. No call may stop it.
     void Stop();
 
     // Forwarded to AuthenticationRetries. Any thread; no call is made inside, except in Gone.
