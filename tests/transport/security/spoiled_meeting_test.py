@@ -152,11 +152,12 @@ class Healthy(Case):
 
     def meet(self, nodes):
         super().meet(nodes)
-        self.met = True
+        self.met, since = True, time.monotonic()
         for node, process in nodes.items():
             other = self.wire.other(node)
             process.wait_for(re.compile(f"heard {other} {SAMPLES_UNDER_ATTACK}").fullmatch, LIMIT_S)
-            lines = [text for _, text in process.lines if text == f"gone {other}" or "begin anew" in text]
+            lines = [text for when, text in process.lines
+                     if when > since and (text == f"gone {other}" or "begin anew" in text)]
             assert not lines, f"{node} lost {other}: {lines}"
         assert self.spoiled > 0, "nothing was forged"
 
