@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <set>
+#include <string>
 
 #include "Command.h"
 #include "CommonOptions.h"
@@ -94,8 +96,14 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         const Doctor::NetworkFacts network = trial.Facts();
         anyNode = session.IsAnybodyThere();
         Append(findings, Doctor::OfBuffers(config, before, Doctor::LookAtMachine()));
-        Append(findings, Doctor::OfMulticast(config, used, network));
+        Append(findings, Doctor::OfMulticast(config, used, network, Doctor::NodesThatHear(fleet)));
         Append(findings, Doctor::OfOtherInterfaces(config, used, network, anyNode));
+        std::set<std::string> names;
+        for (const FleetSession::Node &node : nodes)
+        {
+            names.insert(node.Name);
+        }
+        Append(findings, Doctor::OfOtherParticipants(config, network, names));
         Append(findings, Doctor::OfDomains(config, network, anyNode));
         Append(findings, Doctor::OfSilentDomains(config, network, anyNode, CommonDomains, listened));
         Append(findings, Doctor::OfKeys(config, network, anyNode));

@@ -27,7 +27,7 @@ std::string Listed(const std::set<std::string> &list)
 }  // namespace
 
 std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<Interface> &used,
-                                 const NetworkFacts &facts)
+                                 const NetworkFacts &facts, const std::set<std::string> &heardBy)
 {
     std::vector<Finding> findings;
     if (!config.Multicast)
@@ -61,6 +61,17 @@ std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<
         std::set<std::string> silent;
         std::set_difference(trial.HeardFrom.begin(), trial.HeardFrom.end(), trial.AnsweredFrom.begin(),
                             trial.AnsweredFrom.end(), std::inserter(silent, silent.begin()));
+        if (const auto ours = facts.Domains.find(config.Domain); ours != facts.Domains.end())
+        {
+            for (const auto &[address, of] : ours->second)
+            {
+                if (std::any_of(of.Names.begin(), of.Names.end(),
+                                [&heardBy](const std::string &name) { return heardBy.contains(name); }))
+                {
+                    silent.erase(address);
+                }
+            }
+        }
         if (!silent.empty())
         {
             findings.push_back(
@@ -82,6 +93,29 @@ std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<
                                 : ""});
     }
     return findings;
+}
+
+std::vector<Finding> OfOtherParticipants(const GatewayConfig &config, const NetworkFacts &facts,
+                                         const std::set<std::string> &nodes)
+{
+    std::set<std::string> others;
+    if (const auto ours = facts.Domains.find(config.Domain); ours != facts.Domains.end())
+    {
+        for (const auto &[address, of] : ours->second)
+        {
+            std::set_difference(of.Names.begin(), of.Names.end(), nodes.begin(), nodes.end(),
+                                std::inserter(others, others.end()));
+        }
+    }
+    if (others.empty())
+    {
+        return {};
+    }
+    return {{Level::Note, "participants",
+             Listed(others) + (others.size() == 1 ? " is" : " are") + " heard in domain " +
+                 std::to_string(config.Domain) +
+                 " and not among the nodes: other DDS programs and tools, or nodes whose beats do not come",
+             "nothing, unless a node is among them: gateway/CONNECTING.md"}};
 }
 
 std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode)

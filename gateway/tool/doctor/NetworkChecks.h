@@ -2,6 +2,8 @@
 
 #include <rabit/gateway/GatewayConfig.h>
 
+#include <set>
+#include <string>
 #include <vector>
 
 #include "doctor/Finding.h"
@@ -12,9 +14,13 @@
 namespace Rabit::Tool::Doctor
 {
 
-// Judges multicast on the interfaces used, out and in.
+// Judges multicast on the interfaces used, out and in. `heardBy`: the nodes that hear this program
+// (NodesThatHear); their addresses are reached, whether they answered the trial or not.
 std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<Interface> &used,
-                                 const NetworkFacts &facts);
+                                 const NetworkFacts &facts, const std::set<std::string> &heardBy);
+// Names the participants of our domain that are heard and not among the nodes.
+std::vector<Finding> OfOtherParticipants(const GatewayConfig &config, const NetworkFacts &facts,
+                                         const std::set<std::string> &nodes);
 // Finds other domains in use. `anyNode`: a node was heard in ours.
 std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
 // If no node was found in any domain: says which domains were only listened to, for so many seconds. In the

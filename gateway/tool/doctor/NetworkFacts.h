@@ -20,9 +20,9 @@ struct MulticastTrial
 {
     std::string Error;              // why nothing could be sent; empty: sent
     std::set<std::string> HeardOn;  // interfaces of this machine on which it came in
-    std::set<std::string>
-        HeardFrom;  // addresses of participants that announced themselves on it by multicast
-    std::set<std::string> AnsweredFrom;  // those that answered the announcement sent on it
+    // Addresses of participants of the configured domain that announced themselves on it by multicast.
+    std::set<std::string> HeardFrom;
+    std::set<std::string> AnsweredFrom;  // those that answered an announcement sent on it
 };
 
 struct NetworkFacts

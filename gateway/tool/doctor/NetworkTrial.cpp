@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -31,6 +32,12 @@ namespace
 constexpr std::size_t MostAddresses = 256;
 constexpr std::size_t MostNames = 64;
 constexpr std::size_t MostParticipants = 1024;
+// Participants that are called alone. Each call takes some 190 bytes.
+constexpr std::size_t MostCalledAlone = 64;
+
+// At 20 % loss each way, one of 1000 participants answers none of seven calls.
+constexpr int Calls = 7;
+constexpr std::chrono::milliseconds BetweenCalls{800};
 
 sockaddr_in AddressOf(const std::string &address, int port)
 {
@@ -91,12 +98,13 @@ void Join(const UdpSocket &socket, const std::vector<Interface> &interfaces)
 }
 
 // Returns the error; empty if it was sent.
-std::string SendToGroup(const UdpSocket &socket, int port, const std::vector<std::uint8_t> &bytes)
+std::string Send(const UdpSocket &socket, const std::string &address, int port,
+                 const std::vector<std::uint8_t> &bytes)
 {
-    const sockaddr_in group = AddressOf(CallGroup, port);
+    const sockaddr_in to = AddressOf(address, port);
     const bool sent =
-        ::sendto(socket.Get(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr *>(&group),
-                 sizeof group) == static_cast<ssize_t>(bytes.size());
+        ::sendto(socket.Get(), bytes.data(), bytes.size(), 0, reinterpret_cast<const sockaddr *>(&to),
+                 sizeof to) == static_cast<ssize_t>(bytes.size());
     return sent ? "" : std::generic_category().message(errno);
 }
 
@@ -145,7 +153,11 @@ class NetworkTrial::Work
 public:
     Work(const std::vector<Interface> &used, const std::vector<Interface> &unused, std::string ownName,
          const std::vector<int> &callIn)
-        : _interfaces(used), _unused(unused), _ownName(std::move(ownName)), _end(::eventfd(0, EFD_CLOEXEC))
+        : _interfaces(used),
+          _unused(unused),
+          _ownName(std::move(ownName)),
+          _domain(callIn.front()),
+          _end(::eventfd(0, EFD_CLOEXEC))
     {
         std::random_device random;
         std::generate(_id.begin(), _id.end(), [&random] { return static_cast<std::uint8_t>(random()); });
@@ -154,7 +166,16 @@ public:
             _facts.Trials[one.Name];
         }
         AddEars();
-        Call(callIn);
+        AddMouths();
+        for (Mouth &mouth : _mouths)
+        {
+            std::string &error = _facts.Trials[_interfaces[mouth.Interface].Name].Error;
+            error = Send(_ears[mouth.Ear].Where, CallGroup, _trialPort, TrialOn(mouth.Interface));
+            for (const int domain : callIn)
+            {
+                error = error.empty() ? Call(mouth, domain, 0) : error;
+            }
+        }
         _thread = std::thread([this] { Listen(); });
     }
 
@@ -186,6 +207,23 @@ private:
         UdpSocket Where;
         int Domain = -1;          // announcements of that domain
         std::string Interface{};  // answers to what was sent there; both unset: this machine's own multicast
+        bool IsIgnored = false;
+    };
+
+    // How to send on an interface: sockets of _ears.
+    struct Mouth
+    {
+        std::size_t Interface;  // in _interfaces
+        std::size_t Ear;        // for calls by multicast and their answers
+        std::size_t AloneEar;   // for calls to one participant alone
+    };
+
+    // A participant that was heard and has not answered.
+    struct Unanswered
+    {
+        std::size_t Interface;
+        std::string Address;
+        int Port;
     };
 
     struct Place
@@ -212,8 +250,7 @@ private:
         }
     }
 
-    // Announces one participant on each interface, so that answers tell on which interface it was heard.
-    void Call(const std::vector<int> &domains)
+    void AddMouths()
     {
         for (std::size_t i = 0; i < _interfaces.size(); ++i)
         {
@@ -223,27 +260,52 @@ private:
                 continue;
             }
             UdpSocket socket = OpenSocket(one.Addresses.front(), 0);
-            std::string &error = _facts.Trials[one.Name].Error;
-            if (!socket.IsOpen() || !socket.Set(IPPROTO_IP, IP_MULTICAST_IF, OnInterface(one.Index)))
+            UdpSocket alone = OpenSocket(one.Addresses.front(), 0);
+            if (!socket.IsOpen() || !alone.IsOpen() ||
+                !socket.Set(IPPROTO_IP, IP_MULTICAST_IF, OnInterface(one.Index)))
             {
-                error = std::generic_category().message(errno);
+                _facts.Trials[one.Name].Error = std::generic_category().message(errno);
                 continue;
             }
-            const auto name = one.Name;
-            error = SendToGroup(socket, _trialPort, TrialOn(i));
-            ParticipantId id = _id;
-            id.back() = static_cast<std::uint8_t>(i);
-            std::array<std::uint8_t, 4> address{};
-            ::inet_pton(AF_INET, one.Addresses.front().c_str(), address.data());
-            const auto call = MakeCall(id, address, static_cast<std::uint16_t>(PortOf(socket)));
-            for (const int domain : domains)
+            _mouths.push_back({i, _ears.size(), _ears.size() + 1});
+            _ears.push_back({std::move(socket), -1, one.Name});
+            _ears.push_back({std::move(alone), -1, "", true});
+        }
+    }
+
+    // Announces a participant on the interface, so that answers tell on which interface it was heard. Each
+    // call has a participant of its own, as participants answer newcomers. Returns the error, or nothing.
+    std::string Call(const Mouth &mouth, int domain, int number) const
+    {
+        const UdpSocket &socket = _ears[mouth.Ear].Where;
+        return Send(socket, CallGroup, CallPort(domain), CallFrom(mouth, socket, number));
+    }
+
+    std::vector<std::uint8_t> CallFrom(const Mouth &mouth, const UdpSocket &socket, int number) const
+    {
+        ParticipantId id = _id;
+        id[id.size() - 2] = static_cast<std::uint8_t>(number);
+        id.back() = static_cast<std::uint8_t>(mouth.Interface);
+        std::array<std::uint8_t, 4> address{};
+        ::inet_pton(AF_INET, _interfaces[mouth.Interface].Addresses.front().c_str(), address.data());
+        return MakeCall(id, address, static_cast<std::uint16_t>(PortOf(socket)));
+    }
+
+    // Calls again on all interfaces. Errors were told by the first call.
+    void CallAgain(int number)
+    {
+        for (const Mouth &mouth : _mouths)
+        {
+            static_cast<void>(Call(mouth, _domain, number));
+            const UdpSocket &alone = _ears[mouth.AloneEar].Where;
+            for (const auto &[participant, place] : _unanswered)
             {
-                if (error.empty())
+                if (place.Interface == mouth.Interface)
                 {
-                    error = SendToGroup(socket, CallPort(domain), call);
+                    static_cast<void>(
+                        Send(alone, place.Address, place.Port, CallFrom(mouth, alone, Calls + number)));
                 }
             }
-            _ears.push_back({std::move(socket), -1, name});
         }
     }
 
@@ -261,11 +323,24 @@ private:
         {
             waits.push_back({ear.Where.Get(), POLLIN, 0});
         }
-        while (::poll(waits.data(), waits.size(), -1) >= 0 || errno == EINTR)
+        using Clock = std::chrono::steady_clock;
+        int called = 1;
+        auto callAt = Clock::now() + BetweenCalls;
+        const auto timeout = [&]() -> int
+        {
+            const auto left = std::chrono::ceil<std::chrono::milliseconds>(callAt - Clock::now()).count();
+            return called >= Calls ? -1 : static_cast<int>(std::max<decltype(left)>(left, 0));
+        };
+        while (::poll(waits.data(), waits.size(), timeout()) >= 0 || errno == EINTR)
         {
             if (waits.front().revents != 0)
             {
                 return;
+            }
+            if (called < Calls && Clock::now() >= callAt)
+            {
+                CallAgain(called++);
+                callAt = Clock::now() + BetweenCalls;
             }
             for (std::size_t i = 0; i < _ears.size(); ++i)
             {
@@ -287,6 +362,10 @@ private:
         const auto on =
             std::find_if(_interfaces.begin(), _interfaces.end(),
                          [&datagram](const Interface &one) { return one.Index == datagram.Interface; });
+        if (ear.IsIgnored)
+        {
+            return;
+        }
         if (ear.Domain < 0 && ear.Interface.empty())
         {
             for (std::size_t i = 0; i < _interfaces.size(); ++i)
@@ -301,13 +380,14 @@ private:
         const auto heard = HeardIn(datagram.Bytes);
         // Ignores the participants that this program makes itself, here and with DDS.
         if (!heard || !heard->Announces || heard->Name == _ownName ||
-            std::equal(_id.begin(), _id.end() - 1, heard->Sender.begin()))
+            std::equal(_id.begin(), _id.end() - 2, heard->Sender.begin()))
         {
             return;
         }
         if (ear.Domain < 0)
         {
             AddTo(_facts.Trials[ear.Interface].AnsweredFrom, datagram.From, MostAddresses);
+            _unanswered.erase(heard->Sender);
             return;
         }
         if (on == _interfaces.end())
@@ -319,7 +399,18 @@ private:
         {
             _onUsed.insert(heard->Sender);
         }
-        AddTo(_facts.Trials[on->Name].HeardFrom, datagram.From, MostAddresses);
+        MulticastTrial &trial = _facts.Trials[on->Name];
+        if (ear.Domain == _domain)
+        {
+            AddTo(trial.HeardFrom, datagram.From, MostAddresses);
+            // Not to another address than its own: that would send this machine's datagrams anywhere.
+            if (heard->Port != 0 && !trial.AnsweredFrom.contains(datagram.From) &&
+                _unanswered.size() < MostCalledAlone)
+            {
+                const auto interface = static_cast<std::size_t>(on - _interfaces.begin());
+                _unanswered.try_emplace(heard->Sender, Unanswered{interface, datagram.From, heard->Port});
+            }
+        }
         auto &voices = _facts.Domains[ear.Domain];
         if (voices.size() < MostAddresses || voices.contains(datagram.From))
         {
@@ -356,9 +447,12 @@ private:
     const std::vector<Interface> _unused;
     const std::string _ownName;
     ParticipantId _id{};
+    const int _domain;  // the configured one
     const UdpSocket _end;
     int _trialPort = 0;
     std::vector<Ear> _ears;
+    std::vector<Mouth> _mouths;
+    std::map<ParticipantId, Unanswered> _unanswered;  // for the thread alone
     mutable std::mutex _mutex;
     NetworkFacts _facts;
     std::set<ParticipantId> _onUsed;            // heard on an interface that is used

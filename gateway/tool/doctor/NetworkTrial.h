@@ -12,14 +12,19 @@ namespace Rabit::Tool::Doctor
 
 // Tries the network beside DDS, with sockets of its own. Sends by multicast on each interface, and listens
 // where the participants of all domains announce themselves. Also announces itself once in some domains, so
-// that participants answer. That costs some 190 bytes on the air for each domain and interface, and the
-// answers. Listens from the construction on, on a thread of its own. On interfaces that are not used it only
-// listens.
+// that participants answer, and in the first of them each 0.8 s until it has done so seven times: a call or
+// an answer may be lost. That costs some 190 bytes on the air for each call and interface, and the answers.
+// Listens from the construction on, on a thread of its own. On interfaces that are not used it only listens.
+//
+// A gateway over Cyclone DDS answers a newcomer by multicast, which cannot be told from its periodic
+// announcement. It answers newcomers of an address alone once one of them has addressed it alone
+// (DirectAnnouncements). So participants that were heard and did not answer also get a call of their own,
+// from another participant of this address: its answers do not count.
 class NetworkTrial
 {
 public:
     // `used`, `unused`: interfaces of this machine. `ownName`: the participant of this program, which is
-    // ignored. `callIn`: the domains in which to ask.
+    // ignored. `callIn`: the domains in which to ask, the configured one first.
     NetworkTrial(const std::vector<Interface> &used, const std::vector<Interface> &unused,
                  std::string ownName, const std::vector<int> &callIn);
     ~NetworkTrial();

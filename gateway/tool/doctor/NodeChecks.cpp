@@ -116,6 +116,20 @@ std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const
     return findings;
 }
 
+std::set<std::string> NodesThatHear(const Gateway::Fleet &fleet)
+{
+    std::set<std::string> names;
+    for (const Gateway::NodeStatus &node : fleet.nodes)
+    {
+        if (node.state == Gateway::NodeState::UP && std::isfinite(node.round_trip_s) &&
+            node.round_trip_s >= 0)
+        {
+            names.insert(node.node);
+        }
+    }
+    return names;
+}
+
 std::vector<Finding> OfTypes(const std::vector<FleetSession::Node> &nodes)
 {
     std::vector<Finding> findings;

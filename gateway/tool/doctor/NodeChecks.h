@@ -1,5 +1,6 @@
 #pragma once
 
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ namespace Rabit::Tool::Doctor
 
 // Lists live nodes, and finds nodes of one name, missing announcements and problems of this program.
 std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet);
+// Returns the nodes that hear this program: they echo its beats.
+std::set<std::string> NodesThatHear(const Gateway::Fleet &fleet);
 // Finds types with different definitions.
 std::vector<Finding> OfTypes(const std::vector<FleetSession::Node> &nodes);
 // Finds wall clocks that differ from this machine's.

@@ -29,11 +29,21 @@ std::string Printable(std::span<const std::uint8_t> bytes)
     return text;
 }
 
+constexpr std::uint32_t UdpOverIpv4 = 1;
+
 // Reads the parameters of an announcement, which follow its encapsulation.
 void ReadParameters(RtpsReader list, bool littleEndian, HeardCall &heard)
 {
     while (const auto parameter = TakeParameter(list))
     {
+        if (parameter->Id == Parameters::MetatrafficUnicastLocator && heard.Port == 0)
+        {
+            RtpsReader locator(parameter->Value, littleEndian);
+            const bool isUdp = locator.U32() == UdpOverIpv4;
+            const std::uint32_t port = locator.U32();
+            heard.Port =
+                isUdp && locator.IsGood() && port <= 65535 ? static_cast<std::uint16_t>(port) : heard.Port;
+        }
         const bool isName = parameter->Id == Parameters::EntityName;
         const bool isUserData = parameter->Id == Parameters::UserData;
         heard.HasKeys = heard.HasKeys || parameter->Id == Parameters::IdentityToken;
@@ -73,9 +83,8 @@ void ReadData(const ConstSubmessage &data, HeardCall &heard)
 
 std::vector<std::uint8_t> LocatorOf(const HostAddress &address, std::uint16_t port)
 {
-    constexpr std::uint32_t udpOverIpv4 = 1;
     std::vector<std::uint8_t> locator;
-    Append(locator, udpOverIpv4, 4);
+    Append(locator, UdpOverIpv4, 4);
     Append(locator, port, 4);
     locator.resize(locator.size() + 12);
     Append(locator, address);

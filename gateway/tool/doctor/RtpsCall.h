@@ -24,6 +24,7 @@ struct HeardCall
     bool IsNode = false;  // of Rabit
     bool HasKeys = false;  // it says that it takes part in DDS Security
     bool Announces = false;
+    std::uint16_t Port = 0;  // at which it takes announcements for itself alone, over UDP and IPv4; 0: none
 };
 // Empty if the datagram is not RTPS.
 std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram);

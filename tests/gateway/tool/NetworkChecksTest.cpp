@@ -29,7 +29,7 @@ protected:
 
     Finding Multicast() const
     {
-        const auto findings = OfMulticast(config, used, facts);
+        const auto findings = OfMulticast(config, used, facts, heardBy);
         EXPECT_THAT(findings, ::testing::Not(IsEmpty()));
         return findings.empty() ? Finding() : findings.front();
     }
@@ -39,6 +39,7 @@ protected:
     GatewayConfig config;
     std::vector<Interface> used;
     NetworkFacts facts;
+    std::set<std::string> heardBy;
 };
 
 TEST_F(NetworkChecks, MulticastThatGoesEachWayIsGood)
@@ -88,6 +89,26 @@ TEST_F(NetworkChecks, WhoIsHeardAndDoesNotAnswerIsHeardOneWay)
     EXPECT_THAT(Multicast().Text, HasSubstr("10.0.0.3 is heard, and did not answer"));
 }
 
+TEST_F(NetworkChecks, AnAddressWithANodeThatHearsThisProgramNeedNotAnswer)
+{
+    Trial().AnsweredFrom.clear();
+    facts.Domains[config.Domain]["10.0.0.3"] = {{"uav1"}, true};
+    EXPECT_EQ(Multicast().How, Level::Problem);
+    heardBy = {"uav1"};
+    EXPECT_EQ(Multicast().How, Level::Note);
+}
+
+TEST_F(NetworkChecks, ParticipantsThatAreNoNodesAreNamed)
+{
+    facts.Domains[config.Domain]["10.0.0.3"] = {{"rviz", "uav1"}, true};
+    facts.Domains[config.Domain + 1]["10.0.0.3"] = {{"other"}, true};
+    const auto findings = OfOtherParticipants(config, facts, {"uav1"});
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].How, Level::Note);
+    EXPECT_THAT(findings[0].Text, HasSubstr("rviz is heard in domain 0 and not among the nodes"));
+    EXPECT_THAT(OfOtherParticipants(config, facts, {"rviz", "uav1"}), IsEmpty());
+}
+
 TEST_F(NetworkChecks, WhoAnswersAndAnnouncedNothingMeanwhileIsGood)
 {
     Trial().HeardFrom.clear();
@@ -110,7 +131,7 @@ TEST_F(NetworkChecks, OneInterfaceThatHearsTheOtherIsTold)
 TEST_F(NetworkChecks, WithoutMulticastNothingIsSaidOfIt)
 {
     config.Multicast = false;
-    EXPECT_THAT(OfMulticast(config, used, facts), IsEmpty());
+    EXPECT_THAT(OfMulticast(config, used, facts, heardBy), IsEmpty());
 }
 
 TEST_F(NetworkChecks, NodesOfAnotherDomainAreAProblemIfNobodyIsInOurs)

@@ -48,6 +48,7 @@ TEST(RtpsCall, IsHeardAsAnAnnouncement)
     EXPECT_TRUE(heard->Announces);
     EXPECT_EQ(heard->Name, "");
     EXPECT_FALSE(heard->IsNode);
+    EXPECT_EQ(heard->Port, 7411);
 }
 
 TEST(RtpsCall, IsSmall)
