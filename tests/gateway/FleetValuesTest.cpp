@@ -66,6 +66,60 @@ protected:
     RabitSteppedReactor _reactor{_workspace};
 };
 
+// Collects the lines of the log while it lives.
+class LogLines
+{
+public:
+    std::vector<std::string> Lines;
+
+private:
+    const std::shared_ptr<void> _listening =
+        RabitLog::Listen([this](RabitLogLevel, const std::string &line) { Lines.push_back(line); });
+};
+
+TEST_F(FleetValuesTest, WarnOnceIfNoneComesWhileAnotherNodeIsUp)
+{
+    LogLines log;
+    Start();
+    Post("uav1/Poses", 1);
+    Run(10s);
+    EXPECT_TRUE(log.Lines.empty()) << "no other node is heard";
+    const auto fleet = std::make_shared<Gateway::Fleet>();
+    ASSERT_TRUE(_workspace.AddPublishSubscribeMessage("Gateway/Fleet", fleet));
+    fleet->nodes.emplace_back().state = Gateway::NodeState::UP;
+    fleet->PostMessage();
+    Run(4s);
+    EXPECT_TRUE(log.Lines.empty());
+    Run(20s);
+    ASSERT_EQ(log.Lines.size(), 1u);
+    EXPECT_EQ(
+        log.Lines[0],
+        "Follower: other nodes are heard, and no `*/Pose` of its class came in 5 s: a `subscribe` entry of "
+        "the gateway's configuration brings it; did you mean `Poses`?");
+}
+
+TEST_F(FleetValuesTest, DoNotWarnOnceAValueHasCome)
+{
+    LogLines log;
+    Start();
+    const auto fleet = std::make_shared<Gateway::Fleet>();
+    ASSERT_TRUE(_workspace.AddPublishSubscribeMessage("Gateway/Fleet", fleet));
+    fleet->nodes.emplace_back().state = Gateway::NodeState::UP;
+    fleet->PostMessage();
+    Post("uav1/Pose", 1);
+    Run(20s);
+    EXPECT_TRUE(log.Lines.empty());
+}
+
+TEST(FleetRow, IsFoundByTheNodesName)
+{
+    Gateway::Fleet fleet;
+    EXPECT_EQ(Gateway::FindNode(fleet, "uav1"), nullptr);
+    fleet.nodes.resize(2);
+    fleet.nodes[1].node = "uav1";
+    EXPECT_EQ(Gateway::FindNode(fleet, "uav1"), &fleet.nodes[1]);
+}
+
 TEST_F(FleetValuesTest, HaveTheNewestValueOfEachNodeThatComesAtAnyTime)
 {
     Follower &follower = Start();

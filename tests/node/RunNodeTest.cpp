@@ -1,5 +1,6 @@
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/Fleet.h>
 #include <rabit/node/RunNode.h>
 #include <rabit/transport/TransportFactory.h>
 
@@ -158,6 +159,44 @@ TEST_F(RunNodeTest, RecordsTheNodeIfTheConfigurationSaysSo)
     EXPECT_EQ(files, 1);
     EXPECT_THAT(content, HasSubstr("record: {folder: ")) << "the configuration";
     EXPECT_TRUE(content.ends_with("MCAP0\r\n")) << "it was not ended in order";
+}
+
+TEST_F(RunNodeTest, AnOptionNamesTheFolderOfTheRecording)
+{
+    const auto folder =
+        std::filesystem::path(::testing::TempDir()) / ("rabit_run_node_option_" + std::to_string(::getpid()));
+    EXPECT_EQ(Run({"--record", folder.string()}), 0);
+    EXPECT_TRUE(std::filesystem::exists(folder));
+    std::filesystem::remove_all(folder);
+}
+
+TEST_F(RunNodeTest, OptionsNameTheInterfaces)
+{
+    const auto addManagers = _program.AddManagers;
+    std::vector<std::string> interfaces;
+    _program.AddManagers = [&](RabitReactor &reactor, GatewayConfig &config)
+    {
+        interfaces = config.Interfaces;
+        addManagers(reactor, config);
+    };
+    EXPECT_EQ(Run({"--check", "--interface", "lo", "--interface", "127.0.0.2"}), 0);
+    EXPECT_THAT(interfaces, ::testing::ElementsAre("lo", "127.0.0.2"));
+}
+
+TEST_F(RunNodeTest, ACheckNamesAPublishedMessageThatNoManagerRegisters)
+{
+    std::ofstream(_file, std::ios::app)
+        << "publish:\n  - {message: OneShotStat, type: Rabit::Gateway::Fleet}\n";
+    const auto registered = std::make_shared<Gateway::Fleet>();
+    const auto addManagers = _program.AddManagers;
+    _program.AddManagers = [&](RabitReactor &reactor, GatewayConfig &config)
+    {
+        RabitWorkspace::GetWorkspace()->AddPublishSubscribeMessage("OneShotState", registered);
+        addManagers(reactor, config);
+    };
+    EXPECT_EQ(Run({"--check"}), 0);
+    EXPECT_THAT(_err, HasSubstr("publish OneShotStat: no manager has registered that message before its "
+                                "Startup; did you mean `OneShotState`?\n"));
 }
 
 TEST_F(RunNodeTest, AWrongConfigurationIsOneLineAndNothingIsMade)

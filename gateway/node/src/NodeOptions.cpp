@@ -63,12 +63,29 @@ GatewayConfig LoadNetworkConfig(const NodeOptions &options)
 void AddNodeOptions(CLI::App &app, NodeOptions &options)
 {
     AddNetworkOptions(app, options);
+    app.add_option("--interface", options.Interfaces,
+                   "Network interface to use, by name or address, in place of the file's; may be repeated")
+        ->delimiter(',')
+        ->allow_extra_args(false);
+    app.add_option("--record", options.Record, "Folder to record this node into, in place of the file's");
     app.add_flag("--check", options.Check, "Check the options and files, start nothing");
 }
 
 GatewayConfig LoadNodeConfig(const NodeOptions &options)
 {
     GatewayConfig config = LoadGatewayConfig(options.ConfigFile, options.Node);
+    if (!options.Interfaces.empty())
+    {
+        config.Interfaces = options.Interfaces;
+    }
+    if (!options.Record.empty())
+    {
+        if (!config.Record)
+        {
+            config.Record.emplace();
+        }
+        config.Record->Folder = options.Record;
+    }
     Override(config, options);
     if (options.Check)
     {

@@ -1,15 +1,44 @@
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/GatewayManager.h>
+#include <rabit/idl/NearestWord.h>
 #include <rabit/node/RunNode.h>
 #include <rabit/recording/RecorderManager.h>
 #include <rabit/transport/TransportFactory.h>
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace Rabit
 {
+namespace
+{
+
+// Names on standard error the published messages that no manager has registered so far. One may still do so
+// in its Startup.
+void TellUnknownMessages(const GatewayConfig &config, const RabitWorkspace &workspace)
+{
+    std::vector<std::string> names;
+    for (const MessageInfo &info : workspace.GetListOfMessages())
+    {
+        names.push_back(info.Name);
+    }
+    for (const PublishRule &rule : config.Publish)
+    {
+        if (std::find(names.begin(), names.end(), rule.Message) == names.end())
+        {
+            std::cerr << config.File << ": publish " << rule.Message
+                      << ": no manager has registered that message before its Startup"
+                      << NearestWordHint(rule.Message, names) << '\n';
+        }
+    }
+}
+
+}  // namespace
 
 int RunNode(int argc, char **argv, const NodeProgram &program)
 {
@@ -32,6 +61,7 @@ int RunNode(int argc, char **argv, const NodeProgram &program)
             config.Parameters.RefuseOthers();
             if (options.Check)
             {
+                TellUnknownMessages(config, *RabitWorkspace::GetWorkspace());
                 return 0;
             }
             // The recorder comes before the gateway, which tells it of queue messages.

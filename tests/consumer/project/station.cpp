@@ -1,4 +1,4 @@
-// station [--config station.yaml]: measures the wind ten times a second, and obeys orders.
+// station [--config station.yaml]: measures the wind ten times a second, and obeys orders at once.
 #include <rabit/RabitManager.h>
 #include <rabit/node/RunNode.h>
 
@@ -15,7 +15,8 @@ public:
     Station() : RabitManager("Station")  // which is the name of its queue as well
     {
         AddPublishSubscribeMessage("Wind", _wind);
-        SetWakeupTimeDelaySec(0.1);
+        SetPeriodSec(0.1);            // measures ten times a second, however many orders come
+        SetWakeupBetweenTurns(true);  // and an order does not wait for the next turn
     }
 
     void ExecuteUnitOfWork() final
@@ -28,13 +29,21 @@ public:
                 _factor = order->factor;
             }
         }
+        if (IsTurn())
+        {
+            Measure();
+        }
+    }
+
+private:
+    void Measure()
+    {
         _wind->speed = 5.0 * _factor;  // read an instrument here
         _wind->direction = 270.0;
         ++_wind->number;
         _wind->PostMessage();
     }
 
-private:
     std::shared_ptr<Weather::Wind> _wind = std::make_shared<Weather::Wind>();
     double _factor = 1.0;
 };
@@ -43,6 +52,7 @@ private:
 
 int main(int argc, char **argv)
 {
-    return Rabit::RunNode(argc, argv, "station.yaml", [](Rabit::RabitReactor &reactor)
+    return Rabit::RunNode(argc, argv, "station.yaml",
+                          [](Rabit::RabitReactor &reactor)
                           { reactor.AddManager(std::make_unique<Station>()); });
 }

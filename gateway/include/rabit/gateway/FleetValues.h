@@ -1,8 +1,12 @@
 #pragma once
 
+#include <rabit/RabitLog.h>
 #include <rabit/RabitManager.h>
 #include <rabit/RabitTimer.h>
+#include <rabit/gateway/Fleet.h>
+#include <rabit/idl/NearestWord.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <map>
@@ -10,6 +14,7 @@
 #include <string>
 #include <typeinfo>
 #include <utility>
+#include <vector>
 
 namespace Rabit
 {
@@ -25,7 +30,11 @@ namespace Rabit
 // Each message `X/Pose` of that type in the workspace counts as the one of a node X. So give a message of the
 // program's own a name without `/`.
 //
-// Values of a node that is gone stay. Their age grows, and Gateway/Fleet has the state of the node.
+// Values of a node that is gone stay. Their age grows, and Gateway/Fleet has the state of the node
+// (Gateway::FindNode).
+//
+// If no node's value came within 5 s while another node is UP, a warning says so once, with the message that
+// was perhaps meant: without a `subscribe` entry of the gateway's configuration none ever comes.
 // Not thread-safe: for the manager's unit of work.
 template <typename T>
 class FleetValues
@@ -36,6 +45,7 @@ public:
 
     // New nodes are looked for with this period.
     static constexpr std::chrono::seconds LookPeriod{1};
+    static constexpr int LooksBeforeWarning = 5;
 
     enum class Wake
     {
@@ -55,6 +65,7 @@ public:
         if (_looks.IsDue(_manager))
         {
             Look();
+            WarnIfNoneCame();
         }
         bool any = false;
         for (const auto &[node, message] : _messages)
@@ -113,11 +124,58 @@ private:
         }
     }
 
+    void WarnIfNoneCame()
+    {
+        if (_looksInVain > LooksBeforeWarning || !_messages.empty())
+        {
+            _fleet.reset();
+            return;
+        }
+        if (!_fleet)
+        {
+            _fleet = std::make_shared<Gateway::Fleet>();
+            if (!_manager.AddPublishSubscribeMessage("Gateway/Fleet", _fleet))
+            {
+                _looksInVain = LooksBeforeWarning + 1;
+            }
+        }
+        _fleet->FetchMessage();
+        if (std::none_of(_fleet->nodes.begin(), _fleet->nodes.end(),
+                         [](const auto &node) { return node.state == Gateway::NodeState::UP; }))
+        {
+            _looksInVain = 0;
+        }
+        else if (++_looksInVain > LooksBeforeWarning)
+        {
+            _manager.WriteLog(RabitLogLevel::Warning, "other nodes are heard, and no `*" + _ending +
+                                                          "` of its class came in 5 s: a `subscribe` entry "
+                                                          "of the gateway's configuration brings it" +
+                                                          Hint());
+        }
+    }
+    std::string Hint() const
+    {
+        std::vector<std::string> names;
+        for (const MessageInfo &info : _manager.GetWorkspace().GetListOfMessages())
+        {
+            const std::size_t slash = info.Name.find('/');
+            if (slash != std::string::npos && slash > 0 && info.Type != typeid(Gateway::Fleet))
+            {
+                names.push_back(info.Name.substr(slash + 1));
+            }
+        }
+        std::sort(names.begin(), names.end());
+        names.erase(std::unique(names.begin(), names.end()), names.end());
+        return names.empty() ? "" : NearestWordHint(_ending.substr(1), names);
+    }
+
     RabitManager &_manager;
     const std::string _ending;
     const Wake _wake;
     RabitTimer _looks{LookPeriod};
     std::map<std::string, std::shared_ptr<T>> _messages;
+    std::shared_ptr<Gateway::Fleet> _fleet;  // only until a value has come or was warned of
+    int _looksInVain = 0;                    // while another node is UP
 };
 
 }  // namespace Rabit

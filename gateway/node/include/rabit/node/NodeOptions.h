@@ -3,6 +3,7 @@
 #include <rabit/gateway/GatewayConfig.h>
 
 #include <string>
+#include <vector>
 
 namespace CLI
 {
@@ -20,6 +21,8 @@ struct NodeOptions
     int Domain = -1;     // -1: the file's
     std::string Transport{};
     std::string Keys{};
+    std::vector<std::string> Interfaces{};  // empty: the file's
+    std::string Record{};                   // a folder; empty: the file's
     bool Check = false;
 };
 
@@ -29,7 +32,7 @@ void AddNetworkOptions(CLI::App &app, NodeOptions &options);
 // comes from --node alone. Throws ConfigError.
 GatewayConfig LoadNetworkConfig(const NodeOptions &options);
 
-// Adds the network options and --check.
+// Adds the network options, --interface, --record and --check.
 void AddNodeOptions(CLI::App &app, NodeOptions &options);
 // Loads the gateway's configuration; options replace settings of the file. Throws ConfigError. With Check, it
 // also throws for network settings that cannot work on this host, and names on standard error those that are
