@@ -1,5 +1,5 @@
 // The formation: its rules, and six whole aircraft with the real configuration files on a simulated network.
-#include "../gateway/SimulatedFleet.h"
+#include <rabit/testing/SimulatedFleet.h>
 #include "Aircraft.h"
 #include "Director.h"
 

@@ -1,6 +1,6 @@
 // The same two aircraft as four nodes with the real configuration files, and a ground station, on a simulated
 // network: nothing that they do may depend on where their managers live.
-#include "../gateway/SimulatedFleet.h"
+#include <rabit/testing/SimulatedFleet.h>
 #include "AircraftConfig.h"
 #include "Swarm.h"
 #include "mission/TargetBook.h"

@@ -56,6 +56,7 @@ OWNERS = [
     (r"rabit/gateway/links/", "links"),
     (r"rabit/gateway/", "gateway"),
     (r"rabit/node/", "node"),
+    (r"rabit/testing/", "testing"),
     (r"rabit/recording/", "recording"),
     (r"rabit/", "core"),
     (r"gateway\.idl\.h", "gateway messages"),
@@ -111,6 +112,8 @@ ALLOWED = {
     "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
                      "network", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room manager", "room mcap",
                      "room recording", "room merge", "room replay"},
+    # Whole nodes on a simulated network, for tests.
+    "gateway/testing": {"core", "transport", "simulated backend", "gateway", "testing"},
     "gateway/node": {"core", "factory", "gateway", "node", "recording", "CLI11"},
     # Programs that are measured against each other. Nodes name no vendor. The plain programs of each vendor show what
     # a user gets without Rabit, and so include nothing of it.
