@@ -9,6 +9,7 @@
 #include <ctime>
 #include <map>
 #include <memory>
+#include <tuple>
 
 #include "Command.h"
 #include "CommonOptions.h"
@@ -73,6 +74,7 @@ struct Topic
     std::string Type;
     std::string Encoding;
     std::uint64_t Messages = 0;
+    std::string Life;  // of a merged file: the node that recorded it, and the number of its life
 };
 
 std::vector<Topic> TopicsOf(const Contents &contents)
@@ -82,12 +84,16 @@ std::vector<Topic> TopicsOf(const Contents &contents)
     {
         const auto schema = contents.Schemas.find(channel.SchemaId);
         const auto count = contents.Statistics.ChannelMessageCounts.find(id);
-        topics.push_back({channel.Topic, schema == contents.Schemas.end() ? "" : schema->second.Name,
-                          channel.MessageEncoding,
-                          count == contents.Statistics.ChannelMessageCounts.end() ? 0 : count->second});
+        const std::string recorder = Mcap::ValueOf(channel.Metadata, "rabit.recorded_by");
+        topics.push_back(
+            {channel.Topic, schema == contents.Schemas.end() ? "" : schema->second.Name,
+             channel.MessageEncoding,
+             count == contents.Statistics.ChannelMessageCounts.end() ? 0 : count->second,
+             recorder.empty() ? "" : recorder + " " + Mcap::ValueOf(channel.Metadata, "rabit.life")});
     }
     std::sort(topics.begin(), topics.end(),
-              [](const Topic &left, const Topic &right) { return left.Name < right.Name; });
+              [](const Topic &left, const Topic &right)
+              { return std::tie(left.Name, left.Life) < std::tie(right.Name, right.Life); });
     return topics;
 }
 
@@ -100,6 +106,10 @@ bool ShowJson(const std::string &file, std::uint64_t size, const Contents &conte
                           {"type", topic.Type},
                           {"encoding", topic.Encoding},
                           {"messages", topic.Messages}});
+        if (!topic.Life.empty())
+        {
+            topics.back()["life"] = topic.Life;
+        }
     }
     Json lost = Json::object();
     for (const auto &[topic, count] : MetadataOf(contents, "rabit.losses"))
@@ -157,10 +167,21 @@ bool ShowText(const std::string &file, std::uint64_t size, const Contents &conte
     }
     lines.emplace_back();
     std::vector<std::vector<std::string>> table = {{"TOPIC", "TYPE", "MESSAGES", "RATE"}};
-    for (const Topic &topic : TopicsOf(contents))
+    const std::vector<Topic> topics = TopicsOf(contents);
+    const bool isMerged =
+        std::any_of(topics.begin(), topics.end(), [](const Topic &topic) { return !topic.Life.empty(); });
+    if (isMerged)
+    {
+        table.front().emplace_back("LIFE");
+    }
+    for (const Topic &topic : topics)
     {
         table.push_back({SafeText(topic.Name), SafeText(topic.Type), std::to_string(topic.Messages),
                          RateOf(topic.Messages, seconds)});
+        if (isMerged)
+        {
+            table.back().push_back(SafeText(topic.Life));
+        }
     }
     for (std::string &line : TableLines(table))
     {

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <set>
+#include <string>
 
 #include "Command.h"
 #include "CommonOptions.h"
@@ -191,8 +193,8 @@ int ShowMoment(const Options &options, Asked &asked)
         return ProblemFound;
     }
     Decoder decoder;
-    bool isAlive = false;
     bool isKnown = false;
+    std::set<std::string> alive;  // the knowers' lives at that moment, for people
     std::vector<std::string> problems;
     for (const KnownStream *stream : asked.Streams)
     {
@@ -201,7 +203,7 @@ int ShowMoment(const Options &options, Asked &asked)
         {
             continue;
         }
-        isAlive = true;
+        alive.insert(knower.Node + asked.LifeText(knower.Node, knower.Number));
         const auto value = ValueAt(asked.Source, asked.Contents, asked.Known, *stream, at, problems);
         isKnown = isKnown || value;
         if (value && !Show(options, asked, *stream, *value, at, decoder))
@@ -215,8 +217,9 @@ int ShowMoment(const Options &options, Asked &asked)
     }
     if (!isKnown)
     {
-        Output::Talk(isAlive
-                         ? options.Knower + " had nothing of " + options.What + " yet"
+        Output::Talk(!alive.empty()
+                         ? (alive.size() == 1 ? *alive.begin() : options.Knower) + " had nothing of " +
+                               options.What + " yet"
                          : options.Knower + " was not recorded at that moment, or never had " + options.What);
     }
     return isKnown && problems.empty() && asked.IsGood() ? Good : ProblemFound;
