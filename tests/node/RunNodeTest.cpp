@@ -183,7 +183,7 @@ TEST_F(RunNodeTest, OptionsNameTheInterfaces)
     EXPECT_THAT(interfaces, ::testing::ElementsAre("lo", "127.0.0.2"));
 }
 
-TEST_F(RunNodeTest, ACheckNamesAPublishedMessageThatNoManagerRegisters)
+TEST_F(RunNodeTest, NamesAPublishedMessageThatNoManagerRegisters)
 {
     std::ofstream(_file, std::ios::app)
         << "publish:\n  - {message: OneShotStat, type: Rabit::Gateway::Fleet}\n";
@@ -195,8 +195,9 @@ TEST_F(RunNodeTest, ACheckNamesAPublishedMessageThatNoManagerRegisters)
         addManagers(reactor, config);
     };
     EXPECT_EQ(Run({"--check"}), 0);
-    EXPECT_THAT(_err, HasSubstr("publish OneShotStat: no manager has registered that message before its "
-                                "Startup; did you mean `OneShotState`?\n"));
+    EXPECT_THAT(_err,
+                HasSubstr("one: warning: publish OneShotStat: no manager has registered that message in "
+                          "its constructor; did you mean `OneShotState`?\n"));
 }
 
 TEST_F(RunNodeTest, AWrongConfigurationIsOneLineAndNothingIsMade)

@@ -8,7 +8,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <iostream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,12 +17,11 @@ namespace Rabit
 namespace
 {
 
-// Names on standard error the published messages that no manager has registered so far. One may still do so
-// in its Startup.
-void TellUnknownMessages(const GatewayConfig &config, const RabitWorkspace &workspace)
+// Logs the published messages that no manager has registered so far. One may still do so in its Startup.
+void WarnOfUnknownMessages(const GatewayConfig &config)
 {
     std::vector<std::string> names;
-    for (const MessageInfo &info : workspace.GetListOfMessages())
+    for (const MessageInfo &info : RabitWorkspace::GetWorkspace()->GetListOfMessages())
     {
         names.push_back(info.Name);
     }
@@ -31,9 +29,10 @@ void TellUnknownMessages(const GatewayConfig &config, const RabitWorkspace &work
     {
         if (std::find(names.begin(), names.end(), rule.Message) == names.end())
         {
-            std::cerr << config.File << ": publish " << rule.Message
-                      << ": no manager has registered that message before its Startup"
-                      << NearestWordHint(rule.Message, names) << '\n';
+            RabitLog::Write(RabitLogLevel::Warning,
+                            "publish " + rule.Message +
+                                ": no manager has registered that message in its constructor" +
+                                NearestWordHint(rule.Message, names));
         }
     }
 }
@@ -59,9 +58,9 @@ int RunNode(int argc, char **argv, const NodeProgram &program)
             RabitReactor reactor;
             program.AddManagers(reactor, config);
             config.Parameters.RefuseOthers();
+            WarnOfUnknownMessages(config);
             if (options.Check)
             {
-                TellUnknownMessages(config, *RabitWorkspace::GetWorkspace());
                 return 0;
             }
             // The recorder comes before the gateway, which tells it of queue messages.
