@@ -65,6 +65,15 @@ std::string CounterName(const GatewayConfig &config)
     return config.Name == GatewayConfig().Name ? config.Node : config.Node + "@" + config.Name;
 }
 
+// The beginning of each line of the log. A program has one default workspace and so one node in it, the name
+// of which RunNode gives to the log; a node in another workspace may be one of several in the process.
+std::string LogNameOf(const GatewayConfig &config, const RabitWorkspace &workspace)
+{
+    const bool isOneOfSeveral = !config.Tool && &workspace != &*RabitWorkspace::GetWorkspace();
+    return (isOneOfSeveral ? config.Node + ": gateway" : "gateway") +
+           (config.Name == GatewayConfig().Name ? ": " : " " + config.Name + ": ");
+}
+
 const GatewayConfig &Validated(const GatewayConfig &config)
 {
     ValidateGatewayConfig(config);
@@ -538,8 +547,7 @@ private:
     LinkStrains _strains;
     Exploration &_exploration;
     std::optional<Duration> _exploredAt;
-    const std::string _logName =
-        _config.Name == GatewayConfig().Name ? "gateway: " : "gateway " + _config.Name + ": ";
+    const std::string _logName = LogNameOf(_config, _workspace);
     const std::string _fleetName = FleetMessageNameOf(_config);
     ProblemLog _problemLog{_fleetName};
     ProblemLog::Standing _lasted;

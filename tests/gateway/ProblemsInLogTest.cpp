@@ -90,13 +90,14 @@ TEST_F(ProblemsInLog, EachIsToldOnceMoreWhenItIsGone)
 {
     fleet.Add(GroundConfig()).AddIdleManager("Commands");
     fleet.RunFor(9s);  // after 10 s it says as well that it is lonely
-    EXPECT_THAT(log.Lines(), ElementsAre("gateway: subscribe Pose, MissionState: no node named `uav*` has "
-                                         "been heard"));
+    EXPECT_THAT(log.Lines(),
+                ElementsAre("ground: gateway: subscribe Pose, MissionState: no node named `uav*` has "
+                            "been heard"));
     AddAircraft("uav1");
     Fly(5s);
     ASSERT_EQ(log.Lines().size(), 2u);
     EXPECT_EQ(log.Lines()[1],
-              "gateway: no longer: subscribe MissionState, Pose: no node named `uav*` has "
+              "ground: gateway: no longer: subscribe MissionState, Pose: no node named `uav*` has "
               "been heard");
 }
 
