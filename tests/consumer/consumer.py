@@ -48,6 +48,13 @@ def run_two_managers(program):
     print("ok: two managers")
 
 
+def run_simulated(program):
+    said = run(program)
+    if said != "UP\n":
+        sys.exit(f"simulated said: {said}")
+    print("ok: nodes on a simulated network")
+
+
 def run_types(program):
     """Also that the parser of IDL tells its reason to the program, and nothing to the terminal."""
     said = run(program)

@@ -18,6 +18,7 @@ def main():
         programs = consumer.build(cmake, "programs", folder, folder / "prefix")
         consumer.run_two_managers(programs / "two_managers")
         consumer.run_types(programs / "types")
+        consumer.run_simulated(programs / "simulated")
         consumer.run_again(programs / "again", folder)
         for first in transports:
             for second in transports:
