@@ -5,6 +5,7 @@ Usage: doctor_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 
 import re
 import subprocess
+import sys
 
 from two_aircraft import LIMIT, SWARM, Rabit, harness, is_well, keys, main
 
@@ -20,6 +21,20 @@ def a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well(rabit):
     assert {"interface lo", "nodes", "clocks", "multicast on lo"} <= set(said), findings
     assert {"uav1", "uav2"} <= set(said["nodes"].split()), said
     assert "answered by 127.0.0.1" in said["multicast on lo"], said
+
+
+def a_doctor_is_answered_by_a_node_that_is_alone_over_each_dds(rabit):
+    domain = (rabit.domain + 50) % 200
+    for transport in sys.argv[3].split(","):
+        with harness.Processes() as processes:
+            processes.start([rabit.uav, "--config", SWARM / "uav.yaml", "--node", "alone", "--domain", domain,
+                             "--transport", transport])
+
+            def answered():
+                done = Rabit(rabit.program, rabit.transport, domain).run("doctor", "--wait", "6")
+                return "nodes: alone" in done.stdout and "answered by 127.0.0.1" in done.stdout \
+                    and "did not answer" not in done.stdout
+            harness.until(answered)
 
 
 def a_doctor_tells_of_the_domain_that_the_others_are_in(rabit):
@@ -60,7 +75,8 @@ def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_ther
     assert done.returncode == 3 and "! interface nosuch0: this machine has none. Do: name one of " in done.stdout, done
 
 
-TESTS = [a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well, a_doctor_tells_of_the_domain_that_the_others_are_in,
+TESTS = [a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well, a_doctor_is_answered_by_a_node_that_is_alone_over_each_dds,
+         a_doctor_tells_of_the_domain_that_the_others_are_in,
          a_doctor_that_hears_nobody_listens_until_nodes_of_all_domains_must_have_announced_themselves,
          a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there]
 
