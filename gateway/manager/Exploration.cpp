@@ -69,6 +69,12 @@ std::vector<FleetExplorer::Node> Exploration::Nodes() const
     return _nodes;
 }
 
+std::vector<std::string> Exploration::Tools() const
+{
+    const std::lock_guard lock(_mutex);
+    return _tools;
+}
+
 void Exploration::AskForType(const std::string &node, const std::string &type, std::uint64_t definition)
 {
     {
@@ -129,6 +135,7 @@ void Exploration::FindSubscribers(const std::vector<std::string> &messages, cons
     for (const std::string &message : messages)
     {
         std::set<std::string> reading;
+        std::set<std::string> types;
         Subscribers &subscribers = all[message];
         for (const RemoteEndpoint &endpoint : session.RemoteEndpointsOn(message))
         {
@@ -136,9 +143,14 @@ void Exploration::FindSubscribers(const std::vector<std::string> &messages, cons
             {
                 reading.insert(endpoint.Node);
             }
+            if (!endpoint.IsWriter)
+            {
+                types.insert(endpoint.Type);
+            }
             subscribers.Others += endpoint.Node.empty() && !endpoint.IsWriter ? 1 : 0;
         }
         subscribers.Nodes.assign(reading.begin(), reading.end());
+        subscribers.Types.assign(types.begin(), types.end());
     }
     {
         const std::lock_guard lock(_mutex);
@@ -199,7 +211,7 @@ Exploration::Requests Exploration::TakeRequests()
     return requests;
 }
 
-void Exploration::SetNodes(const PeerTable &peers, const PostTime &now)
+void Exploration::SetNodes(const PeerTable &peers, const ProblemTexts &problems, const PostTime &now)
 {
     std::vector<Node> nodes;
     const std::vector<const PeerTable::Peer *> heard = peers.Heard();
@@ -207,11 +219,13 @@ void Exploration::SetNodes(const PeerTable &peers, const PostTime &now)
     {
         nodes.push_back({peer->Node, peer->State, peer->Incarnation, peer->Offers, peer->Twice,
                          ClockAhead(*peer, now), peer->Beats.Heard(), peer->Beats.Missed(),
-                         std::chrono::duration<double>(peer->Period).count(), StrainsOf(*peer, heard)});
+                         std::chrono::duration<double>(peer->Period).count(), StrainsOf(*peer, heard),
+                         problems.AreTold(peer->Node)});
     }
     {
         const std::lock_guard lock(_mutex);
         _nodes = std::move(nodes);
+        _tools = peers.HeardTools();
     }
     Tell();
 }

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "presence/PeerTable.h"
+#include "report/ProblemTexts.h"
 #include "types/TypeQuestions.h"
 #include "wire/NodeReports.h"
 
@@ -35,6 +36,7 @@ public:
     bool IsWanted() const { return _wanted; }
 
     std::vector<Node> Nodes() const override;
+    std::vector<std::string> Tools() const override;
     void AskForType(const std::string &node, const std::string &type, std::uint64_t definition) override;
     std::optional<std::string> TypeText(std::uint64_t definition) const override;
     void AskForReport(const std::string &node, Report what, std::uint32_t argument) override;
@@ -53,7 +55,7 @@ public:
     };
     // Gateway's thread only, as those that follow.
     Requests TakeRequests();
-    void SetNodes(const PeerTable &peers, const PostTime &now);
+    void SetNodes(const PeerTable &peers, const ProblemTexts &problems, const PostTime &now);
     void AddText(std::uint64_t definition, std::string text);
     void AddReport(const std::string &node, NodeReports::Name name, Answer answer);
     void FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session);
@@ -68,6 +70,7 @@ private:
     std::atomic<bool> _wanted{false};
     mutable std::mutex _mutex;
     std::vector<Node> _nodes;
+    std::vector<std::string> _tools;
     std::map<std::uint64_t, std::string> _texts;
     // By node and kind: the argument of the last request, and the answer to it.
     std::map<std::pair<std::string, NodeReports::Kind>, std::pair<std::uint32_t, std::optional<Answer>>>

@@ -185,6 +185,10 @@ public:
                 TellClocks();
             }
             PostFleet(now);
+            if (_exploration.IsWanted())
+            {
+                SetExplored(now);
+            }
             _nextFleet = now + FleetPeriod;
             _earliestFleet = now + ShortestFleetGap;
         }
@@ -285,6 +289,12 @@ private:
         }
     }
 
+    void SetExplored(Duration now)
+    {
+        _exploredAt = now;
+        _exploration.SetNodes(_presence.Peers(), _problemTexts, _workspace.GetClock().Now());
+    }
+
     // Serves the requests of FleetExplorer.
     void Explore(const PeerTable::Change &change, Duration now)
     {
@@ -292,8 +302,7 @@ private:
         if (change.State || change.Offers || change.NewLife || !_exploredAt ||
             now - *_exploredAt >= FleetPeriod)
         {
-            _exploredAt = now;
-            _exploration.SetNodes(_presence.Peers(), _workspace.GetClock().Now());
+            SetExplored(now);
         }
         const Exploration::Requests requests = _exploration.TakeRequests();
         for (const TypeQuestions::Wanted &wanted : requests.Lacking)
@@ -479,8 +488,11 @@ private:
         }
         else if (report->What == NodeReports::Kind::Problems)
         {
-            _problemTexts.Add(node, answer.Text);
-            _nextFleet = std::min(_nextFleet, _earliestFleet);
+            if (const PeerTable::Peer *peer = _presence.Peers().Find(node))
+            {
+                _problemTexts.Add(*peer, answer.Text);
+                _nextFleet = std::min(_nextFleet, _earliestFleet);
+            }
         }
         else
         {
@@ -551,7 +563,7 @@ private:
     const std::string _fleetName = FleetMessageNameOf(_config);
     ProblemLog _problemLog{_fleetName};
     ProblemLog::Standing _lasted;
-    ProblemTexts _problemTexts;  // of the others
+    ProblemTexts _problemTexts{_config.Tool.has_value()};  // of the others
     const OwnLog _log{_logName + "node " + _config.Node + ", " + Whereabouts::OfThisProcess()};
     bool _forwards = false;
     Duration _nextFleet{0};

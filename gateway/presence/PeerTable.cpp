@@ -158,6 +158,7 @@ void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
     peer.TwinPlace = peer.Twice ? std::exchange(peer.Place, {}) : "";
     peer.Place.clear();
     peer.Problems = {};
+    peer.HasToldProblems = false;
 }
 
 bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
@@ -253,6 +254,7 @@ bool PeerTable::TakeProblems(Peer &peer, const HeardBeat &heard)
     if (const std::optional<ProblemCount> told = BeatExtensions::ProblemsIn(heard.Beat))
     {
         peer.Problems = *told;
+        peer.HasToldProblems = true;
         peer.ProblemsTold = heard.Arrival;
     }
     else if (heard.Arrival - peer.ProblemsTold > std::max(ProblemMemory, 2 * peer.LostAfter()))

@@ -63,6 +63,7 @@ public:
         bool IsReplay = false;            // it plays a recording
         std::vector<LinkStrain> Strains;  // as its newest beat reports them
         ProblemCount Problems;            // as its beats told last, now and then
+        bool HasToldProblems = false;     // since its incarnation is heard
         Duration ProblemsTold{0};
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
@@ -139,7 +140,8 @@ public:
     const Peer *Find(const std::string &node) const;
     // Nodes that have been heard, by name; no tools.
     std::vector<const Peer *> Heard() const;
-    // Number of tools that are kept.
+    // Tools that are kept, by name; and their number.
+    std::vector<std::string> HeardTools() const;
     std::size_t Tools() const { return _tools; }
     // Number of nodes forgotten, and of beats dropped because no room could be made for their node.
     std::uint64_t Forgotten() const { return _forgotten; }

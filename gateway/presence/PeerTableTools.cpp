@@ -8,6 +8,19 @@ namespace Rabit
 
 using Gateway::NodeState;
 
+std::vector<std::string> PeerTable::HeardTools() const
+{
+    std::vector<std::string> names;
+    for (const auto &[name, peer] : _peers)
+    {
+        if (peer.IsTool)
+        {
+            names.push_back(name);
+        }
+    }
+    return names;
+}
+
 PeerTable::Change PeerTable::OnToolBeat(const HeardBeat &heard)
 {
     Change change;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 #include <string_view>
 #include <utility>
 
@@ -46,11 +47,12 @@ std::string ProblemTexts::ReportOf(const ProblemLog::Standing &standing)
     return report;
 }
 
-void ProblemTexts::Add(const std::string &node, const std::string &report)
+void ProblemTexts::Add(const PeerTable::Peer &node, const std::string &report)
 {
     std::string_view rest = report;
     const std::string_view digest = TakeLine(rest);
     Texts texts;
+    texts.Incarnation = node.Incarnation;
     if (std::from_chars(digest.data(), digest.data() + digest.size(), texts.Digest).ec != std::errc())
     {
         return;
@@ -59,27 +61,35 @@ void ProblemTexts::Add(const std::string &node, const std::string &report)
     {
         texts.Lines.push_back(Clean(std::string(TakeLine(rest))));
     }
-    _known[node] = std::move(texts);
+    _known[node.Node] = std::move(texts);
+}
+
+// A node that has told of its problems tells each change of them.
+const ProblemTexts::Texts *ProblemTexts::Find(const PeerTable::Peer &peer) const
+{
+    const auto known = _known.find(peer.Node);
+    const bool isCurrent = known != _known.end() && known->second.Incarnation == peer.Incarnation &&
+                           (!peer.HasToldProblems || known->second.Digest == peer.Problems.Digest);
+    return isCurrent ? &known->second : nullptr;
 }
 
 bool ProblemTexts::Lacks(const PeerTable::Peer &peer) const
 {
-    if (peer.Problems.Count == 0 || peer.State == Gateway::NodeState::LOST)
-    {
-        return false;
-    }
-    const auto known = _known.find(peer.Node);
-    return known == _known.end() || known->second.Digest != peer.Problems.Digest;
+    const bool mayHave = peer.HasToldProblems ? peer.Problems.Count > 0 : _asksAll;
+    return mayHave && peer.State != Gateway::NodeState::LOST && Find(peer) == nullptr;
 }
 
 void ProblemTexts::Fill(const PeerTable &peers, Gateway::Fleet &fleet)
 {
+    const auto hasNone = [](const PeerTable::Peer &peer)
+    { return peer.HasToldProblems && peer.Problems.Count == 0; };
     std::erase_if(_known,
-                  [&peers](const auto &entry)
+                  [&](const auto &entry)
                   {
                       const PeerTable::Peer *peer = peers.Find(entry.first);
-                      return peer == nullptr || peer->Problems.Count == 0;
+                      return peer == nullptr || hasNone(*peer);
                   });
+    _told.clear();
     for (Gateway::NodeStatus &status : fleet.nodes)
     {
         const PeerTable::Peer *peer = peers.Find(status.node);
@@ -88,10 +98,18 @@ void ProblemTexts::Fill(const PeerTable &peers, Gateway::Fleet &fleet)
             continue;
         }
         status.problems = peer->Problems.Count;
-        const auto known = _known.find(status.node);
-        if (known != _known.end() && known->second.Digest == peer->Problems.Digest)
+        if (const Texts *texts = Find(*peer))
         {
-            status.problem_texts.assign(known->second.Lines.begin(), known->second.Lines.end());
+            status.problem_texts.assign(texts->Lines.begin(), texts->Lines.end());
+            // A node that refuses words sends its digest alone.
+            const bool hasAny = texts->Digest != ProblemLog("").Lasted(std::chrono::nanoseconds(0)).Digest;
+            const auto least = std::max<std::size_t>(texts->Lines.size(), hasAny ? 1 : 0);
+            status.problems = std::max(status.problems, static_cast<std::uint32_t>(least));
+            _told.insert(status.node);
+        }
+        else if (hasNone(*peer))
+        {
+            _told.insert(status.node);
         }
     }
 }

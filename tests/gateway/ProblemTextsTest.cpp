@@ -42,6 +42,18 @@ protected:
         return fleet.nodes[0];
     }
 
+    // uav1 is there, and has not told whether it has problems.
+    void Hear()
+    {
+        now += 500ms;
+        HeardBeat heard;
+        heard.Node = "uav1";
+        heard.Incarnation = 5;
+        heard.Beat = BeatAt(now);
+        heard.Arrival = now;
+        peers.OnBeat(heard);
+    }
+
     const PeerTable::Peer &Uav() { return *peers.Find("uav1"); }
 
     std::chrono::nanoseconds now = 1s;
@@ -60,7 +72,7 @@ TEST_F(ProblemTextsTest, WhatANodeReportsIsWhatItsRowTells)
     EXPECT_TRUE(texts.Lacks(Uav()));
     EXPECT_EQ(Row().problems, 1u);
     EXPECT_THAT(Row().problem_texts, IsEmpty());
-    texts.Add("uav1", ProblemTexts::ReportOf(standing));
+    texts.Add(Uav(), ProblemTexts::ReportOf(standing));
     EXPECT_FALSE(texts.Lacks(Uav()));
     EXPECT_THAT(Row().problem_texts, ElementsAre("subscribe Pose: nobody publishes it"));
 }
@@ -68,7 +80,7 @@ TEST_F(ProblemTextsTest, WhatANodeReportsIsWhatItsRowTells)
 TEST_F(ProblemTextsTest, NothingIsLackingOfANodeThatSendsNoWords)
 {
     Hear({.Count = 1, .Digest = 7});
-    texts.Add("uav1", ProblemTexts::ReportOf({.Problems = {}, .Digest = 7}));
+    texts.Add(Uav(), ProblemTexts::ReportOf({.Problems = {}, .Digest = 7}));
     EXPECT_FALSE(texts.Lacks(Uav()));
     EXPECT_EQ(Row().problems, 1u);
     EXPECT_THAT(Row().problem_texts, IsEmpty());
@@ -77,7 +89,7 @@ TEST_F(ProblemTextsTest, NothingIsLackingOfANodeThatSendsNoWords)
 TEST_F(ProblemTextsTest, OtherProblemsHaveOtherTexts)
 {
     Hear({.Count = 1, .Digest = 7});
-    texts.Add("uav1", "7\nold\n");
+    texts.Add(Uav(), "7\nold\n");
     Hear({.Count = 1, .Digest = 8});
     EXPECT_TRUE(texts.Lacks(Uav()));
     EXPECT_THAT(Row().problem_texts, IsEmpty());
@@ -94,23 +106,78 @@ TEST_F(ProblemTextsTest, TextsFromTheNetworkAreBoundedAndPrintable)
     {
         report += "\x1b[2J" + std::string(1000, '\xff') + "\n";
     }
-    texts.Add("uav1", report);
+    texts.Add(Uav(), report);
     EXPECT_THAT(Row().problem_texts, SizeIs(ProblemTexts::MostTexts));
     EXPECT_THAT(Row().problem_texts, Each(::testing::StartsWith("?[2J?")));
     EXPECT_THAT(Row().problem_texts, Each(SizeIs(ProblemTexts::LongestText)));
-    texts.Add("uav1", "");
-    texts.Add("uav1", "no digest\n");
+    texts.Add(Uav(), "");
+    texts.Add(Uav(), "no digest\n");
     EXPECT_THAT(Row().problem_texts, SizeIs(ProblemTexts::MostTexts));
 }
 
 TEST_F(ProblemTextsTest, ALostNodeHasNone)
 {
     Hear({.Count = 1, .Digest = 7});
-    texts.Add("uav1", "7\nold\n");
+    texts.Add(Uav(), "7\nold\n");
     now += 1min;
     peers.Advance(now);
     EXPECT_FALSE(texts.Lacks(Uav()));
     EXPECT_EQ(Row().problems, 0u);
+}
+
+TEST_F(ProblemTextsTest, AToolAlsoAsksANodeThatHasNotToldOfProblems)
+{
+    Hear();
+    EXPECT_FALSE(texts.Lacks(Uav()));
+    ProblemTexts ofTool(true);
+    EXPECT_TRUE(ofTool.Lacks(Uav()));
+    Gateway::Fleet fleet;
+    FleetReport::FillNodes(peers, now, fleet);
+    ofTool.Fill(peers, fleet);
+    EXPECT_FALSE(ofTool.AreTold("uav1"));
+    ofTool.Add(Uav(), "7\nsubscribe Pose: nobody publishes it\n");
+    ofTool.Fill(peers, fleet);
+    EXPECT_TRUE(ofTool.AreTold("uav1"));
+    EXPECT_EQ(fleet.nodes[0].problems, 1u);
+    EXPECT_THAT(fleet.nodes[0].problem_texts, ElementsAre("subscribe Pose: nobody publishes it"));
+}
+
+TEST_F(ProblemTextsTest, AToolIsToldThatANodeHasNone)
+{
+    Hear();
+    ProblemTexts ofTool(true);
+    ofTool.Add(Uav(), ProblemTexts::ReportOf(ProblemLog("Gateway/Fleet").Lasted(now)));
+    Gateway::Fleet fleet;
+    FleetReport::FillNodes(peers, now, fleet);
+    ofTool.Fill(peers, fleet);
+    EXPECT_TRUE(ofTool.AreTold("uav1"));
+    EXPECT_EQ(fleet.nodes[0].problems, 0u);
+}
+
+TEST_F(ProblemTextsTest, AToolAsksAgainAfterARestart)
+{
+    Hear();
+    ProblemTexts ofTool(true);
+    ofTool.Add(Uav(), "7\nold\n");
+    EXPECT_FALSE(ofTool.Lacks(Uav()));
+    HeardBeat heard;
+    heard.Node = "uav1";
+    heard.Incarnation = 6;
+    heard.Beat = BeatAt(now + 500ms);
+    heard.Arrival = now + 500ms;
+    peers.OnBeat(heard);
+    EXPECT_TRUE(ofTool.Lacks(Uav()));
+}
+
+TEST_F(ProblemTextsTest, ANodeThatRefusesWordsHasAProblemAllTheSame)
+{
+    Hear();
+    ProblemTexts ofTool(true);
+    ofTool.Add(Uav(), ProblemTexts::ReportOf({.Problems = {}, .Digest = 7}));
+    Gateway::Fleet fleet;
+    FleetReport::FillNodes(peers, now, fleet);
+    ofTool.Fill(peers, fleet);
+    EXPECT_EQ(fleet.nodes[0].problems, 1u);
 }
 
 }  // namespace

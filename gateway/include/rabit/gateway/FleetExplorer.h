@@ -59,9 +59,14 @@ public:
         // Troubles of its queue links to other nodes, as its own beats report them: at most four, the worst
         // first.
         std::vector<Strain> Strains;
+        // True if Gateway/Fleet has the node's own problems as it told them last, or that it has none. Always
+        // false for nodes that `problems_of` does not name.
+        bool AreProblemsKnown = false;
     };
     // The other nodes, by name.
     virtual std::vector<Node> Nodes() const = 0;
+    // The names of other tools that are heard.
+    virtual std::vector<std::string> Tools() const = 0;
 
     // Asks that node for the text of a type, by the definition hash in its announcement. The gateway repeats
     // the question, ever more seldom, until the text comes or another call names another node for it.
@@ -90,11 +95,12 @@ public:
     virtual std::optional<Answer> TakeReport(const std::string &node, Report what) = 0;
 
     // The readers of a message, of whatever origin node: the reading nodes, by name and each once, and the
-    // number of other readers. Tools are no nodes.
+    // number of other readers. Tools are no nodes. Types: the types in which they read it, each once.
     struct Subscribers
     {
         std::vector<std::string> Nodes;
         std::size_t Others = 0;
+        std::vector<std::string> Types{};
     };
     // Has the gateway look up the readers of these messages, as far as discovery knows them by then.
     virtual void LookForSubscribers(const std::vector<std::string> &messages) = 0;
