@@ -466,4 +466,65 @@ std::string ValueOf(const TextMap &values, const std::string &key)
     return found == values.end() ? "" : found->second;
 }
 
+namespace
+{
+
+// The log times of the channel's messages in the chunk.
+std::vector<std::uint64_t> TimesIn(ByteSource &source, const ChunkIndex &chunk, std::uint16_t channel)
+{
+    const auto found = chunk.MessageIndexOffsets.find(channel);
+    const auto head =
+        found == chunk.MessageIndexOffsets.end() ? std::nullopt : ReadPart(source, found->second, RecordHead);
+    const std::uint64_t length =
+        head ? ReadHead(std::span<const std::uint8_t, RecordHead>(head->data(), RecordHead)).Length : 0;
+    const auto bytes = head && length <= chunk.MessageIndexLength
+                           ? ReadPart(source, found->second + RecordHead, length)
+                           : std::nullopt;
+    const auto index = bytes ? Read<MessageIndex>(*bytes) : std::nullopt;
+    std::vector<std::uint64_t> times;
+    if (index && index->ChannelId == channel)
+    {
+        for (const auto &[time, offset] : index->Entries)
+        {
+            times.push_back(time);
+        }
+    }
+    return times;
+}
+
+}  // namespace
+
+std::optional<std::pair<std::uint64_t, std::uint64_t>> SpanOf(ByteSource &source, const Contents &contents,
+                                                              std::uint16_t channel)
+{
+    std::optional<std::pair<std::uint64_t, std::uint64_t>> span;
+    const auto take = [&](const ChunkIndex &chunk)
+    {
+        // Chunks follow each other in time, as a rule: most are passed over.
+        if (span && chunk.StartTime >= span->first && chunk.EndTime <= span->second)
+        {
+            return;
+        }
+        for (const std::uint64_t time : TimesIn(source, chunk, channel))
+        {
+            span = span ? std::pair(std::min(span->first, time), std::max(span->second, time))
+                        : std::pair(time, time);
+        }
+    };
+    // From both ends inwards.
+    const std::vector<ChunkIndex> &chunks = contents.Chunks;
+    for (std::size_t i = 0; i < (chunks.size() + 1) / 2; ++i)
+    {
+        take(chunks[i]);
+        take(chunks[chunks.size() - 1 - i]);
+    }
+    return span;
+}
+
+bool IsRecording(ByteSource &source)
+{
+    std::array<std::uint8_t, Magic.size()> begin{};
+    return source.Size() >= begin.size() && source.Read(0, begin) && begin == Magic;
+}
+
 }  // namespace Rabit::Mcap

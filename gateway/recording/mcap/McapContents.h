@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recording/mcap/ByteSource.h"
@@ -58,6 +61,14 @@ private:
 Contents ReadContents(ByteSource &source, const ContentsLimits &limits = {});
 // Reads the contents from all of the file, whatever its summary says.
 Contents ScanContents(ByteSource &source, const ContentsLimits &limits = {});
+
+// Returns the log times of the first and the last message of a channel; nothing if the file has no index of
+// them, as a file that was not ended in order.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> SpanOf(ByteSource &source, const Contents &contents,
+                                                              std::uint16_t channel);
+
+// True if the file begins as an MCAP file.
+bool IsRecording(ByteSource &source);
 
 // Returns the last metadata record of that name; empty if there is none.
 TextMap MetadataOf(const Contents &contents, const std::string &name);

@@ -121,9 +121,12 @@ Moment AgeHistory::Percentile(double part) const
     for (std::size_t bin = 0; bin < Bins; ++bin)
     {
         sum += _bins[bin];
-        if (sum >= total * part)
+        if (sum >= total * part && _bins[bin] > 0.0)
         {
-            return std::min(_oldest, static_cast<Moment>(EdgeOf(bin)));
+            // A known value ages steadily, so within a bin all ages are as frequent.
+            const double begin = bin == 0 ? 0.0 : EdgeOf(bin - 1);
+            const double over = (sum - total * part) / _bins[bin];
+            return std::min(_oldest, static_cast<Moment>(EdgeOf(bin) - over * (EdgeOf(bin) - begin)));
         }
     }
     return _oldest;

@@ -32,8 +32,8 @@ public:
     };
     const std::vector<Column> &Columns() const { return _columns; }
     std::size_t Values() const { return _values; }
-    // Returns the age that was not exceeded for that part of the time, from 0 to 1, to within some percent
-    // of the age. 0 if no time has passed.
+    // Returns the age that was not exceeded for that part of the time, from 0 to 1, to within 2.4 % of the
+    // age at worst: within a bin it is interpolated. 0 if no time has passed.
     Moment Percentile(double part) const;
     Moment Oldest() const { return _oldest; }
     // The moment of the oldest age.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <set>
 
@@ -20,6 +21,8 @@ constexpr double PanelHead = 26;
 constexpr double PanelHeight = 130;
 constexpr double PanelFoot = 26;
 constexpr double Foot = 24;
+
+constexpr double LegendLine = 15;
 
 // Colours that colour-blind people can tell apart, too (Okabe and Ito).
 constexpr std::array<const char *, 7> Colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
@@ -57,6 +60,28 @@ std::string Escaped(const std::string &text)
     return escaped;
 }
 
+// Returns a colour that no other number has. After the first ones the hues follow by the golden angle, which
+// keeps them apart, each a little darker than the one before.
+std::string ColourOf(std::size_t number)
+{
+    if (number < Colours.size())
+    {
+        return Colours[number];
+    }
+    constexpr double goldenAngle = 137.508;
+    const double hue = std::fmod(goldenAngle * static_cast<double>(number), 360.0) / 60.0;
+    const double light = 200.0 - 40.0 * static_cast<double>(number % 3);
+    const auto part = [&](double at)
+    {
+        const double distance = std::abs(std::remainder(hue - at, 6.0));
+        return static_cast<unsigned>(light * std::clamp(2.0 - distance, 0.0, 1.0));
+    };
+    std::array<char, 8> text{};
+    std::snprintf(text.data(), text.size(), "#%02x%02x%02x", part(0.0) & 0xffU, part(2.0) & 0xffU,
+                  part(4.0) & 0xffU);
+    return text.data();
+}
+
 std::string AgeText(int decade)
 {
     static constexpr std::array<const char *, 9> texts = {"0.01 ms", "0.1 ms", "1 ms",  "10 ms", "0.1 s",
@@ -90,8 +115,11 @@ public:
 
     std::string Run()
     {
-        const double height =
-            Head + static_cast<double>(_plot.Panels.size()) * (PanelHead + PanelHeight + PanelFoot) + Foot;
+        double height = Head + Foot;
+        for (const AgePlot::Panel &panel : _plot.Panels)
+        {
+            height += PanelHead + HeightOf(panel) + PanelFoot;
+        }
         const std::string size = Number(Left + Width + Legend) + " " + Number(height);
         _svg = R"(<svg xmlns="http://www.w3.org/2000/svg" version="1.1" width=")" +
                Number(Left + Width + Legend) + R"(" height=")" + Number(height) + R"(" viewBox="0 0 )" +
@@ -103,13 +131,29 @@ public:
         for (const AgePlot::Panel &panel : _plot.Panels)
         {
             Draw(panel, top + PanelHead);
-            top += PanelHead + PanelHeight + PanelFoot;
+            top += PanelHead + HeightOf(panel) + PanelFoot;
         }
         Text(Left + Width / 2, top + 12, "time since the beginning (s)", "text-anchor=\"middle\"");
         return std::move(_svg) + "</svg>\n";
     }
 
 private:
+    static std::set<std::string> MessagesOf(const AgePlot::Panel &panel)
+    {
+        std::set<std::string> messages;
+        for (const AgePlot::Line &line : panel.Lines)
+        {
+            messages.insert(line.Message);
+        }
+        return messages;
+    }
+
+    // The legend has a line for each message.
+    static double HeightOf(const AgePlot::Panel &panel)
+    {
+        return std::max(PanelHeight, LegendLine * static_cast<double>(MessagesOf(panel).size()));
+    }
+
     void FindDecades()
     {
         Moment youngest = FarthestMoment;
@@ -138,20 +182,18 @@ private:
         std::set<std::string> messages;
         for (const AgePlot::Panel &panel : _plot.Panels)
         {
-            for (const AgePlot::Line &line : panel.Lines)
-            {
-                messages.insert(line.Message);
-            }
+            messages.merge(MessagesOf(panel));
         }
         for (const std::string &message : messages)
         {
-            _colours.emplace(message, Colours[_colours.size() % Colours.size()]);
+            _colours.emplace(message, ColourOf(_colours.size()));
         }
     }
 
     void Draw(const AgePlot::Panel &panel, double top)
     {
-        const double bottom = top + PanelHeight;
+        _height = HeightOf(panel);
+        const double bottom = top + _height;
         Text(Left, top - 8, panel.Title, "font-weight=\"bold\"");
         for (int decade = _least; decade <= _most; ++decade)
         {
@@ -169,28 +211,38 @@ private:
                  "text-anchor=\"middle\" font-size=\"11\" fill=\"#666\"");
         }
         _svg += "<rect x=\"" + Number(Left) + "\" y=\"" + Number(top) + "\" width=\"" + Number(Width) +
-                "\" height=\"" + Number(PanelHeight) + "\" fill=\"none\" stroke=\"#999\"/>\n";
-        const std::string middle = Number(top + PanelHeight / 2);
-        Text(22, top + PanelHeight / 2, "age",
+                "\" height=\"" + Number(_height) + "\" fill=\"none\" stroke=\"#999\"/>\n";
+        const std::string middle = Number(top + _height / 2);
+        Text(22, top + _height / 2, "age",
              "text-anchor=\"middle\" transform=\"rotate(-90 22 " + middle + ")\"");
         double legend = top + 12;
         std::set<std::string> named;
+        // Lines come over all ranges, and those of every second message are dashed: so none hides another
+        // one.
+        for (const bool isRange : {true, false})
+        {
+            for (const AgePlot::Line &line : panel.Lines)
+            {
+                const auto colour = _colours.find(line.Message);
+                const bool isDashed = std::distance(_colours.begin(), colour) % 2 == 1;
+                Draw(*line.Ages, top, colour->second, isRange, isDashed);
+            }
+        }
         for (const AgePlot::Line &line : panel.Lines)
         {
             const std::string colour = _colours.at(line.Message);
-            Draw(*line.Ages, top, colour);
             if (!named.insert(line.Message).second)
             {
                 continue;
             }
             Rule(Left + Width + 12, legend - 4, Left + Width + 32, legend - 4, colour.c_str(), 3);
             Text(Left + Width + 38, legend, line.Message, "font-size=\"11\"");
-            legend += 15;
+            legend += LegendLine;
         }
     }
 
     // Draws each stretch without a gap.
-    void Draw(const AgeHistory &ages, double top, const std::string &colour)
+    void Draw(const AgeHistory &ages, double top, const std::string &colour, bool isRange, bool isDashed)
     {
         const auto &columns = ages.Columns();
         for (std::size_t begin = 0; begin < columns.size();)
@@ -202,14 +254,14 @@ private:
             }
             if (end > begin)
             {
-                Draw(columns, begin, end, top, colour);
+                Draw(columns, begin, end, top, colour, isRange, isDashed);
             }
             begin = end + 1;
         }
     }
 
     void Draw(const std::vector<AgeHistory::Column> &columns, std::size_t begin, std::size_t end, double top,
-              const std::string &colour)
+              const std::string &colour, bool isRange, bool isDashed)
     {
         const double width = Width / static_cast<double>(columns.size());
         const auto point = [&](std::size_t column, Moment age)
@@ -224,16 +276,20 @@ private:
             oldest += point(column, columns[column].Oldest);
             youngest += point(end - 1 - (column - begin), columns[end - 1 - (column - begin)].Youngest);
         }
-        _svg +=
-            "<polygon points=\"" + oldest + youngest + "\" fill=\"" + colour + "\" fill-opacity=\"0.25\"/>\n";
+        if (isRange)
+        {
+            _svg += "<polygon points=\"" + oldest + youngest + "\" fill=\"" + colour +
+                    "\" fill-opacity=\"0.25\"/>\n";
+            return;
+        }
         _svg += "<polyline points=\"" + oldest + "\" fill=\"none\" stroke=\"" + colour +
-                "\" stroke-width=\"1.2\"/>\n";
+                "\" stroke-width=\"1.2\"" + (isDashed ? " stroke-dasharray=\"6 4\"" : "") + "/>\n";
     }
 
     double Y(double top, double seconds) const
     {
         const double decades = std::log10(std::max(seconds, std::pow(10.0, _least))) - _least;
-        return top + PanelHeight * (1.0 - std::min(1.0, decades / (_most - _least)));
+        return top + _height * (1.0 - std::min(1.0, decades / (_most - _least)));
     }
 
     void Text(double x, double y, const std::string &text, const std::string &style)
@@ -251,7 +307,8 @@ private:
 
     const AgePlot &_plot;
     std::string _svg;
-    int _least = 0;  // decades of seconds
+    double _height = PanelHeight;  // of the panel that is drawn
+    int _least = 0;                // decades of seconds
     int _most = 0;
     std::map<std::string, std::string> _colours;
 };

@@ -257,6 +257,7 @@ void Merger::TellTimeLine(std::size_t life, Moment at, Moment logTime)
                                          {"uncertain_by_ns", bound ? Json(*bound) : Json()}});
     const Mcap::Bytes data(text.begin(), text.end());
     _writer.Add({*channel, 0, ToFile(at), ToFile(at), data});
+    ++_merged.TimeLines;
 }
 
 void Merger::WriteMetadata()

@@ -18,6 +18,7 @@ namespace Rabit::Merge
 struct Merged
 {
     std::vector<std::uint64_t> Messages;  // by life
+    std::uint64_t TimeLines = 0;          // of the topics `<node>/Recorder/TimeLine`, which no recording has
     std::uint64_t Repeated = 0;  // states that files of a recording repeat at their beginning, left out
     std::uint64_t Lost = 0;      // without a channel, or too large
     std::vector<std::string> Problems;  // what could not be read, one line each
