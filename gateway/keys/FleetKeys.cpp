@@ -235,6 +235,28 @@ std::vector<std::string> FleetKeys::Issued() const
     return files;
 }
 
+std::vector<std::string> FleetKeys::Revoked() const
+{
+    const std::string place = Place(RevokedFile);
+    const RevocationsPtr revoked = ReadRevocations(ReadFile(place), place);
+    std::map<std::string, bool> areRevoked;
+    for (const std::string &file : Issued())
+    {
+        const CertificatePtr certificate = ReadCertificate(ReadFile(file), file);
+        bool &all = areRevoked.try_emplace(SubjectOf(*certificate).Node, true).first->second;
+        all = all && IsRevoked(*revoked, *certificate);
+    }
+    std::vector<std::string> nodes;
+    for (const auto &[node, are] : areRevoked)
+    {
+        if (are)
+        {
+            nodes.push_back(node);
+        }
+    }
+    return nodes;
+}
+
 // A key that two nodes have was copied with a disk, and a key with a revoked certificate may be stolen.
 void FleetKeys::CheckFresh(const std::string &node, const EVP_PKEY &key) const
 {

@@ -50,6 +50,8 @@ public:
     std::time_t EndsAt() const { return _validity.To; }
     // The nodes that have a folder.
     std::vector<std::string> Nodes() const;
+    // The nodes whose certificates are all revoked.
+    std::vector<std::string> Revoked() const;
     std::string FolderOf(const std::string &node) const { return _folder + "/" + node; }
     // The request from which the node's present keys were made.
     Request RequestOf(const std::string &node) const;

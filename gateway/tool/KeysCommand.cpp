@@ -42,7 +42,7 @@ struct Options
     std::vector<std::string> Requests;
     std::string PassphraseFile;
     std::string Transport;
-    int Domain = -1;  // the file's, or for a tool 0
+    int Domain = -1;  // the file's, or for a tool that of the fleet
     int Days = 365;
     int Ahead = 30;
     bool ForTool = false;
@@ -72,7 +72,48 @@ Keys::FleetKeys::Request RequestFrom(const GatewayConfig &config)
     return {.Node = config.Node, .Transport = config.Transport, .Access = AccessOf(config)};
 }
 
-Keys::FleetKeys::Request RequestOf(const Options &options, const std::string &node)
+// The domain that the keys are for; -1: none, or several.
+int DomainOf(const Keys::NodeKeys &keys)
+{
+    const auto &rules = keys.Permissions().Rules;
+    const bool isOne = !rules.empty() && rules.front().Domains.size() == 1 &&
+                       rules.front().Domains.front().first == rules.front().Domains.front().second;
+    return isOne ? rules.front().Domains.front().first : -1;
+}
+
+// How many nodes of the fleet have keys for which domain.
+std::map<int, std::size_t> DomainsOf(const Keys::FleetKeys &fleet)
+{
+    std::map<int, std::size_t> domains;
+    for (const std::string &node : fleet.Nodes())
+    {
+        try
+        {
+            ++domains[DomainOf(Keys::NodeKeys(fleet.FolderOf(node), Keys::PrivateKeyPlace::HereOrOnNode))];
+        }
+        catch (const Keys::KeysError &)
+        {
+            // `rabit keys check` reports it.
+        }
+    }
+    domains.erase(-1);
+    return domains;
+}
+
+// The domain in which most nodes are, if there are such; -1: none.
+int UsualDomainOf(const Keys::FleetKeys &fleet)
+{
+    const std::map<int, std::size_t> domains = DomainsOf(fleet);
+    const auto most =
+        std::max_element(domains.begin(), domains.end(),
+                         [](const auto &one, const auto &other) { return one.second < other.second; });
+    const auto same = std::count_if(domains.begin(), domains.end(),
+                                    [&](const auto &one) { return one.second == most->second; });
+    return same == 1 ? most->first : -1;
+}
+
+Keys::FleetKeys::Request RequestOf(const Options &options, const Keys::FleetKeys &fleet,
+                                   const std::string &node)
 {
     GatewayConfig config;
     if (!options.Config.empty())
@@ -83,6 +124,15 @@ Keys::FleetKeys::Request RequestOf(const Options &options, const std::string &no
     {
         config.Node = node;
         config.Tool.emplace();
+        const std::map<int, std::size_t> domains = DomainsOf(fleet);
+        if (options.Domain < 0 && domains.size() != 1)
+        {
+            throw Keys::KeysError(std::string(domains.empty()
+                                                  ? "no node of the fleet has keys yet"
+                                                  : "the nodes of the fleet are in several domains") +
+                                  "; give the tool's with --domain");
+        }
+        config.Domain = options.Domain < 0 ? domains.begin()->first : options.Domain;
     }
     if (options.Domain >= 0)
     {
@@ -145,12 +195,15 @@ void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::s
                       ? "copy the folder to " + node + " by a way that nobody else can read, and "
                       : "copy the files in the folder into the folder on " + node +
                             " that has its private key (they are not secret), and ") +
-                 (options.ForTool ? "look at the fleet with `rabit nodes --keys <the folder there>`"
+                 (options.ForTool ? "look at the fleet in domain " + std::to_string(DomainOf(keys)) +
+                                        " with `rabit nodes --keys <the folder there>`"
                                   : "write `security: {keys: <the folder there>}` into its configuration"));
     if (revoked)
     {
-        Output::Talk(std::to_string(*revoked) + " older certificates of " + node +
-                     " are revoked: copy revoked.pem to all nodes, and start them again");
+        Output::Talk(std::to_string(*revoked) +
+                     (*revoked == 1 ? " older certificate of " + node + " is revoked"
+                                    : " older certificates of " + node + " are revoked") +
+                     ": copy revoked.pem to all nodes, and start them again");
     }
 }
 
@@ -186,7 +239,7 @@ int Init(const Options &options)
 int Add(const Options &options)
 {
     const Keys::FleetKeys fleet = FleetOf(options);
-    fleet.Add(RequestOf(options, options.Node), PeriodOf(options));
+    fleet.Add(RequestOf(options, fleet, options.Node), PeriodOf(options));
     ShowMade(options, fleet, options.Node);
     return Good;
 }
@@ -223,7 +276,7 @@ int Sign(const Options &options)
     const Keys::FleetKeys fleet = FleetOf(options);
     for (const Keys::SigningRequest &signing : requests)
     {
-        fleet.Add(RequestOf(options, signing.Node), PeriodOf(options), &signing);
+        fleet.Add(RequestOf(options, fleet, signing.Node), PeriodOf(options), &signing);
         ShowMade(options, fleet, signing.Node, &signing);
     }
     return Good;
@@ -246,7 +299,7 @@ int Renew(const Options &options)
     for (const std::string &node : options.Nodes)
     {
         Keys::FleetKeys::Request access =
-            options.Config.empty() ? fleet.RequestOf(node) : RequestOf(options, node);
+            options.Config.empty() ? fleet.RequestOf(node) : RequestOf(options, fleet, node);
         if (!options.Transport.empty())
         {
             access.Transport = options.Transport;
@@ -272,13 +325,15 @@ int Revoke(const Options &options)
     }
     else
     {
-        Output::Line(options.Node + ": " + std::to_string(count) + " certificates are revoked");
+        Output::Line(options.Node + ": " + std::to_string(count) +
+                     (count == 1 ? " certificate is revoked" : " certificates are revoked"));
     }
-    Output::Talk("every node goes on to believe " + options.Node +
-                 " until it has the new revoked.pem and is started again; it is in these folders:");
+    Output::Talk("the folder " + fleet.FolderOf(options.Node) + " is removed");
+    Output::Talk("each node believes " + options.Node +
+                 " until it has its new revoked.pem and is started again; copy to each node:");
     for (const std::string &node : fleet.Nodes())
     {
-        Output::Talk("    " + fleet.FolderOf(node));
+        Output::Talk("    " + fleet.FolderOf(node) + "/revoked.pem");
     }
     return Good;
 }
@@ -326,9 +381,9 @@ std::vector<Keys::KeysFinding> FindingsOf(const Keys::NodeKeys &keys, const Gate
 }
 
 // Reports on one node's folder; returns true if it is good. Beside the authorities it may lack the private
-// key.
+// key. `usual`: the domain of the other nodes; -1: none.
 bool Check(const std::string &folder, const std::map<std::string, GatewayConfig> &configs,
-           const Options &options)
+           const Options &options, int usual = -1)
 {
     std::string name = std::filesystem::path(folder).filename().string();
     std::vector<Keys::KeysFinding> findings;
@@ -348,6 +403,10 @@ bool Check(const std::string &folder, const std::map<std::string, GatewayConfig>
         if (!keys.HasPrivateKey())
         {
             findings.push_back({false, "its private key is on the node alone"});
+        }
+        if (usual >= 0 && DomainOf(keys) != usual)
+        {
+            findings.push_back({false, "most nodes are in domain " + std::to_string(usual)});
         }
     }
     catch (const Keys::KeysError &error)
@@ -398,10 +457,18 @@ int CheckAll(const Options &options)
         return Check(options.Folder, configs, options) ? Good : ProblemFound;
     }
     const Keys::FleetKeys fleet(options.Folder);
+    const int usual = UsualDomainOf(fleet);
     bool isGood = true;
     for (const std::string &node : fleet.Nodes())
     {
-        isGood = Check(fleet.FolderOf(node), configs, options) && isGood;
+        isGood = Check(fleet.FolderOf(node), configs, options, usual) && isGood;
+    }
+    for (const std::string &node : options.Json ? std::vector<std::string>() : fleet.Revoked())
+    {
+        if (!std::filesystem::exists(fleet.FolderOf(node)))
+        {
+            Output::Line(SafeText(node) + ": revoked");
+        }
     }
     for (const auto &[node, config] : configs)
     {
@@ -445,7 +512,9 @@ void AddAccess(CLI::App &command, Options &options)
     CLI::Option *tool = command.add_flag("--tool", options.ForTool,
                                          "For this program: it may read everything, and publishes nothing");
     config->excludes(tool);
-    command.add_option("--domain", options.Domain, "DDS domain, in place of the file's; of a tool: 0")
+    command
+        .add_option("--domain", options.Domain,
+                    "DDS domain, in place of the file's; of a tool: that of the fleet")
         ->check(CLI::Range(0, Keys::LargestDomain));
     command.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
     AddDays(command, options, 365);

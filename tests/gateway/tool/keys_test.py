@@ -166,9 +166,37 @@ def json_is_an_object_for_each_thing_that_was_done(shell):
 
 def who_is_revoked_is_gone(shell):
     shell.fleet()
-    assert "1 certificates are revoked" in shell.good("revoke", "uav1")
+    assert "1 certificate is revoked" in shell.good("revoke", "uav1")
     assert not (shell.folder / "keys" / "uav1").exists()
     assert shell("renew", "uav1").returncode == 1
+    assert "uav1: revoked\n" in shell.good("check")
+
+
+def a_revocation_tells_what_is_removed_and_what_to_copy(shell):
+    shell.fleet()
+    shell.good("add", "laptop", "--tool")
+    told = shell("revoke", "laptop").stderr
+    assert "the folder keys/laptop is removed" in told and "keys/uav1/revoked.pem" in told, told
+
+
+def a_tool_is_in_the_domain_of_the_fleet(shell):
+    shell.good("init")
+    done = shell("add", "laptop", "--tool")
+    assert done.returncode == 1 and "--domain" in done.stderr, done
+    shell.good("add", "uav1", "--config", "uav1.yaml")
+    done = shell("add", "laptop", "--tool")
+    assert done.returncode == 0 and "  in domain 7\n" in done.stdout and "in domain 7" in done.stderr, done
+    shell.good("add", "other", "--tool", "--domain", "8")
+    done = shell("add", "third", "--tool")
+    assert done.returncode == 1 and "several domains" in done.stderr, done
+
+
+def a_node_in_another_domain_than_the_others_is_noted(shell):
+    shell.fleet()
+    shell.good("add", "laptop", "--tool")
+    assert "note: most nodes" not in shell.good("check")
+    shell.good("add", "other", "--tool", "--domain", "8")
+    assert shell.good("check").count("note: most nodes are in domain 7\n") == 1
 
 
 def a_node_keeps_its_private_key(shell):
@@ -262,6 +290,8 @@ def main():
              a_check_tells_whether_all_is_good, a_configuration_that_has_changed_is_a_problem_until_it_is_renewed,
              a_node_without_keys_is_a_problem, what_ends_soon_is_a_problem, a_key_that_others_may_read_is_a_problem,
              json_is_an_object_for_each_node, json_is_an_object_for_each_thing_that_was_done, who_is_revoked_is_gone,
+             a_revocation_tells_what_is_removed_and_what_to_copy, a_tool_is_in_the_domain_of_the_fleet,
+             a_node_in_another_domain_than_the_others_is_noted,
              a_node_keeps_its_private_key, a_check_of_the_fleet_needs_no_private_key,
              requests_of_several_nodes_are_signed_together, a_bad_request_leaves_all_unsigned,
              a_request_does_not_replace_a_node, a_passphrase_comes_from_a_file_a_pipe_or_the_environment,
