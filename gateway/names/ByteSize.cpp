@@ -32,6 +32,10 @@ std::string SizeText(std::uint64_t bytes)
 
 std::uint64_t ParseByteSize(const std::string &text, const ByteRange &range)
 {
+    if (text == "0" && range.Least == 0)
+    {
+        return 0;
+    }
     const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
     const auto *const unit =
         std::find(std::begin(Units), std::end(Units), std::string_view(text).substr(unitAt));

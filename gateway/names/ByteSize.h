@@ -29,7 +29,8 @@ inline constexpr ByteRange Memory{Megabyte, 64000 * Megabyte};
 }  // namespace RecordRanges
 
 // Returns the bytes of a number with a unit: B, kB, MB, GB or TB, powers of 1000. A number without a unit is
-// refused because its unit would be a guess. Throws std::invalid_argument with what is expected.
+// refused because its unit would be a guess; 0 needs none. Throws std::invalid_argument with what is
+// expected.
 std::uint64_t ParseByteSize(const std::string &text, const ByteRange &range);
 
 }  // namespace Rabit

@@ -3,10 +3,13 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <rabit/idl/NearestWord.h>
+
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <memory>
+#include <tuple>
 
 #include "AirPlan.h"
 #include "CheckedFiles.h"
@@ -19,6 +22,7 @@
 #include "Output.h"
 #include "SafeText.h"
 #include "Table.h"
+#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {
@@ -156,6 +160,53 @@ std::vector<std::vector<std::string>> Details(const std::vector<AirPlan> &plans)
     return rows;
 }
 
+// Says which name of --rate or --size is no message, queue or type of the fleet; empty: all are.
+std::string UnknownName(const Options &options, const std::vector<GatewayConfig> &fleet)
+{
+    std::vector<std::string> names;
+    std::vector<std::string> types;
+    for (const GatewayConfig &config : fleet)
+    {
+        for (const PublishRule &rule : config.Publish)
+        {
+            names.push_back(rule.Message);
+            types.push_back(rule.Type);
+        }
+        for (const AcceptRule &rule : config.Accept)
+        {
+            names.push_back(rule.Queue);
+            types.insert(types.end(), rule.Types.begin(), rule.Types.end());
+        }
+        for (const SubscribeRule &rule : config.Subscribe)
+        {
+            names.push_back(rule.Message);
+            types.push_back(rule.Type);
+        }
+        for (const SendRule &rule : config.Send)
+        {
+            names.push_back(rule.Queue);
+        }
+    }
+    types.insert(types.end(), names.begin(), names.end());
+    for (const auto &[option, texts, known] :
+         {std::tuple("--rate", &options.Rates, &names), std::tuple("--size", &options.Sizes, &types)})
+    {
+        for (const std::string &text : *texts)
+        {
+            std::string name = text.substr(0, text.find('='));
+            name.erase(0, name.find('/') == std::string::npos ? 0 : name.find('/') + 1);
+            if (std::none_of(known->begin(), known->end(),
+                             [&name](const std::string &one)
+                             { return MatchesPattern(name, one) || MatchesPattern(one, name); }))
+            {
+                return std::string(option) + " " + text + ": no node has a `" + name + "`" +
+                       NearestWordHint(name, *known);
+            }
+        }
+    }
+    return "";
+}
+
 int Run(const Options &options)
 {
     const IdlFiles types(options.Idl);
@@ -180,6 +231,11 @@ int Run(const Options &options)
     {
         findings = FleetCheck::FindingsOf(fleet);
     }
+    if (const std::string unknown = allGood ? UnknownName(options, fleet) : ""; !unknown.empty())
+    {
+        Output::Talk(unknown);
+        return Usage;
+    }
     const std::vector<AirPlan> plans = AirPlansOf(fleet, input);
     for (const AirPlan &plan : plans)
     {
@@ -196,6 +252,17 @@ int Run(const Options &options)
                                        .Line = FleetCheck::LineIn(*plan.Config, "radio.budget"),
                                        .Nodes = {plan.Config->Node},
                                        .Text = large,
+                                       .IsProblem = false});
+        }
+    }
+    for (const GatewayConfig &config : fleet)
+    {
+        if (const int line = FleetCheck::LineIn(config, "parameters"); line != 0)
+        {
+            FleetCheck::Add(findings, {.File = config.File,
+                                       .Line = line,
+                                       .Nodes = {config.Node},
+                                       .Text = "parameters are not looked at: the program itself checks them",
                                        .IsProblem = false});
         }
     }

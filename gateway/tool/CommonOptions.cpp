@@ -71,6 +71,17 @@ void AddExamples(CLI::App &command, const std::vector<std::string> &examples)
     command.footer(text + "\n" + command.get_footer());
 }
 
+CLI::Validator AboveZero()
+{
+    return {[](std::string &text)
+            {
+                double number = 0.0;
+                const bool isGood = CLI::detail::lexical_cast(text, number) && number > 0.0;
+                return isGood ? std::string() : "`" + text + "`; it must be a number above 0";
+            },
+            "NUMBER"};
+}
+
 void TakeOneValueEach(CLI::App &app)
 {
     for (CLI::Option *option : app.get_options([](const CLI::Option *one) { return !one->get_positional(); }))

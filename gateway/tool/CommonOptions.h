@@ -9,7 +9,8 @@
 namespace CLI
 {
 class App;
-}
+class Validator;
+}  // namespace CLI
 
 namespace Rabit::Tool
 {
@@ -18,7 +19,8 @@ namespace Rabit::Tool
 inline constexpr int Good = 0;
 inline constexpr int ProblemFound = 1;
 inline constexpr int Usage = 2;
-inline constexpr int NoNetwork = 3;  // it could not be joined, or nobody was heard
+inline constexpr int NoNetwork = 3;      // it could not be joined, or nobody was heard
+inline constexpr int Interrupted = 130;  // Ctrl-C came before there was a result; the shell's 128 + SIGINT
 
 // The options of every command that looks at a network.
 struct CommonOptions
@@ -39,6 +41,9 @@ void AddCommonOptions(CLI::App &app, CommonOptions &options, double wait);
 
 // Adds examples to the help of a command, each a line for the shell.
 void AddExamples(CLI::App &command, const std::vector<std::string> &examples);
+
+// Accepts numbers above 0.
+CLI::Validator AboveZero();
 
 // Makes every option of the program take one value at a time, so that the word after the value is an
 // argument. An option of several values is repeated. To be called once all commands have their options.

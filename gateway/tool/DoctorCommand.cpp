@@ -5,8 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstdio>
 #include <iterator>
 #include <memory>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -19,6 +21,7 @@
 #include "doctor/NetworkChecks.h"
 #include "doctor/NetworkTrial.h"
 #include "doctor/NodeChecks.h"
+#include "doctor/RtpsCall.h"
 
 namespace Rabit::Tool
 {
@@ -34,6 +37,13 @@ constexpr int CommonDomains = 10;
 
 // Seconds in which participants without a budget announce themselves again: the announcement period is 10 s.
 constexpr double AllAnnounced = 12.0;
+
+std::vector<int> AllDomains()
+{
+    std::vector<int> domains(Doctor::LastDomain + 1);
+    std::iota(domains.begin(), domains.end(), 0);
+    return domains;
+}
 
 void Append(std::vector<Finding> &all, std::vector<Finding> more)
 {
@@ -81,7 +91,7 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
     {
         // NetworkTrial listens before DDS does, so that no answer is missed.
         const Doctor::NetworkTrial trial(used, Doctor::UnusedBy(config, before.Interfaces), config.Node,
-                                         domains);
+                                         domains, AllDomains());
         FleetSession session(config, options, wakeup);
         double listened = options.Wait;
         session.WaitUntil(listened, [] { return false; });
@@ -90,6 +100,18 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
             // The reason may be a domain that is only listened to.
             listened = AllAnnounced;
             session.WaitUntil(listened, [] { return false; });
+        }
+        if (!options.IsWaitGiven)
+        {
+            session.WaitUntil(session.Patience(), [&session] { return session.Underway().empty(); });
+        }
+        if (wakeup.IsInterrupted())
+        {
+            char text[80];
+            std::snprintf(text, sizeof text, "interrupted after %.0f of %.0f s: nothing is known",
+                          session.Seconds(), listened);
+            Output::Talk(text);
+            return Interrupted;
         }
         const std::vector<FleetSession::Node> nodes = session.Nodes();
         const Gateway::Fleet fleet = session.Fleet();
@@ -106,7 +128,7 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfOtherParticipants(config, network, names));
         Append(findings, Doctor::OfDomains(config, network, anyNode));
         Append(findings, Doctor::OfSilentDomains(config, network, anyNode, CommonDomains, listened));
-        Append(findings, Doctor::OfKeys(config, network, anyNode));
+        Append(findings, Doctor::OfKeys(config, network, session.Heard()));
         Append(findings, Doctor::OfNodes(nodes, fleet));
         Append(findings, Doctor::OfTypes(nodes));
         Append(findings, Doctor::OfClocks(nodes, fleet));

@@ -197,8 +197,7 @@ void AddEchoCommand(CLI::App &app, Chosen &chosen)
     AddCommonOptions(*command, options->Common, 5.0);
     command->add_option("--field", options->Field, "Only that part of the value, as a.b or a.0");
     command->add_flag("--once", options->Once, "One value, then end");
-    command->add_option("--rate", options->Rate, "So many a second of each node at most")
-        ->check(CLI::PositiveNumber);
+    command->add_option("--rate", options->Rate, "So many a second of each node at most")->check(AboveZero());
     AddExamples(*command, {"rabit echo uav1/Pose --once",
                            "rabit echo 'uav*/Pose' --field altitude_m --rate 1", "rabit echo Pose --json"});
     command->callback([options, &chosen]

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "FleetType.h"
+#include "Offers.h"
 #include "Output.h"
+#include "Samples.h"
 #include "names/NamePattern.h"
 
 namespace Rabit::Tool
@@ -12,6 +14,8 @@ namespace
 {
 
 constexpr double TypeWait = 2.0;
+// Seconds after which a message that nobody publishes is reported.
+constexpr double Patience = 2.0;
 // Seconds until a type is requested again that no node has handed out.
 constexpr double Pause = 5.0;
 
@@ -25,8 +29,8 @@ FleetFollower::FleetFollower(FleetSession &session, const std::vector<std::strin
     {
         const std::size_t slash = one.find('/');
         _patterns.push_back(slash == std::string::npos
-                                ? Pattern{"*", one}
-                                : Pattern{one.substr(0, slash), one.substr(slash + 1)});
+                                ? Pattern{.Node = "*", .Message = one}
+                                : Pattern{.Node = one.substr(0, slash), .Message = one.substr(slash + 1)});
     }
 }
 
@@ -91,6 +95,33 @@ std::vector<std::string> FleetFollower::FollowNew()
         }
     }
     return followed;
+}
+
+void FleetFollower::TellOfMissing()
+{
+    const std::vector<FleetSession::Node> nodes = _session.Nodes();
+    for (Pattern &pattern : _patterns)
+    {
+        if (pattern.IsChecked || _session.Seconds() < Patience ||
+            !Offers::AreAllThere(nodes, pattern.Node, _session.IsEverybodyHeard()))
+        {
+            continue;
+        }
+        pattern.IsChecked = true;
+        const bool isPublished = std::any_of(
+            nodes.begin(), nodes.end(),
+            [&pattern](const FleetSession::Node &node)
+            {
+                return MatchesPattern(pattern.Node, node.Name) && node.Offers &&
+                       std::any_of(node.Offers->publishes.begin(), node.Offers->publishes.end(),
+                                   [&pattern](const Gateway::PublishedMessage &published)
+                                   { return MatchesPattern(pattern.Message, published.message); });
+            });
+        if (!isPublished)
+        {
+            TellNobodyPublishes(_session, pattern.Node, pattern.Message);
+        }
+    }
 }
 
 // Returns false if the type did not come, so that the call must be repeated later.

@@ -30,6 +30,8 @@ public:
     // Looks at new announcements; waits at most two seconds for each missing type. Returns the messages that
     // it has begun to follow, as `uav1/Pose`.
     std::vector<std::string> FollowNew();
+    // Once the announcements have come that can: reports each wanted message that nobody publishes.
+    void TellOfMissing();
     // Number of messages subscribed to.
     std::size_t Messages() const { return _followed.size(); }
 
@@ -38,6 +40,7 @@ private:
     {
         std::string Node;
         std::string Message;
+        bool IsChecked = false;  // by TellOfMissing
     };
     struct Followed
     {

@@ -6,6 +6,8 @@
 #include <rabit/transport/TransportFactory.h>
 
 #include <algorithm>
+#include <iterator>
+#include <set>
 
 #include "Offers.h"
 #include "Output.h"
@@ -13,13 +15,59 @@
 #include "doctor/MachineChecks.h"
 #include "doctor/NetworkChecks.h"
 #include "doctor/NetworkTrial.h"
+#include "names/ListedNames.h"
 
 namespace Rabit::Tool
 {
 
+namespace
+{
+
+// Seconds in which nodes that do not save on beats are heard.
+constexpr double Everybody = 1.5;
+// Seconds in which nodes without a budget announce themselves twice to a newcomer. With keys a node is heard
+// only once it is authenticated, but its announcements come before.
+constexpr double TwoAnnouncements = 2.2;
+// Seconds that are added for handshakes: on a busy computer one takes seconds, and they go one after another.
+constexpr double Handshakes = 15.0;
+// Seconds that are added for answers: a node may be answering others.
+constexpr double Answers = 3.0;
+
+// Two nodes of one name disturb each other, and so does a tool with the name of a node. With keys the name is
+// bound to a certificate that no node has.
+void CheckOwnName(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup)
+{
+    if (!config.Tool || config.Security || config.Node != options.Node.Node)
+    {
+        return;
+    }
+    CommonOptions listening = options;
+    listening.Node.Node.clear();
+    GatewayConfig listener = config;
+    listener.Node = ConfigOf(listening).Node;
+    listener.Tool->AsksOf = {listener.Node};
+    FleetSession session(listener, listening, wakeup);
+    const auto isTaken = [&] { return !session.TakenOf({config.Node}).empty(); };
+    bool isFree = !session.WaitUntil(std::min(Everybody, options.Wait), isTaken);
+    isFree = isFree && !session.WaitUntil(
+                           std::min(Offers::SecondsToHearEverybody(session.Nodes()), options.Wait), isTaken);
+    if (!isFree)
+    {
+        throw std::runtime_error(NameIsTaken(config.Node));
+    }
+}
+
+}  // namespace
+
 FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup)
     : _config(config), _options(options), _wakeup(wakeup)
 {
+    CheckOwnName(config, options, wakeup);
+    _start = std::chrono::steady_clock::now();
+    if (config.Security)
+    {
+        _announcements = Listen({});
+    }
     // The commands themselves report the gateway's warnings where they matter, so these are logged only with
     // --verbose.
     RabitLog::SetLevel(options.Verbose ? RabitLogLevel::Warning : RabitLogLevel::Error);
@@ -64,30 +112,125 @@ bool FleetSession::WaitForOffers(const std::string &pattern, const std::function
 {
     // With --wait the user asks to wait for nodes that are yet to come.
     const bool mayCome = _options.IsWaitGiven;
-    const auto ends = [&]
-    {
-        const std::vector<Node> nodes = Nodes();
-        const bool isEverybodyHeard = !mayCome && Seconds() >= Offers::SecondsToHearEverybody(nodes);
-        return holds() || Offers::AreAllThere(nodes, pattern, isEverybodyHeard);
-    };
-    // The nodes that are heard meanwhile may announce longer periods.
-    bool hasEnded = false;
-    for (double until = 0.0; !hasEnded && until < _options.Wait;)
-    {
-        const double everybody = Offers::SecondsToHearEverybody(Nodes());
-        until = everybody > until ? std::min(everybody, _options.Wait) : _options.Wait;
-        hasEnded = WaitUntil(until, ends);
-    }
+    WaitUntilDecided(
+        [&] { return holds() || Offers::AreAllThere(Nodes(), pattern, !mayCome && IsEverybodyHeard()); });
     return holds();
 }
 
-void FleetSession::WaitForRest()
+bool FleetSession::WaitUntilDecided(const std::function<bool()> &isDecided)
 {
-    constexpr double longer = 3.0;
-    if (IsAnybodyThere() && !_options.IsWaitGiven)
+    // The nodes that are heard meanwhile may announce longer periods.
+    bool hasEnded = false;
+    for (double until = 0.0; !hasEnded && until < Patience();)
     {
-        WaitUntil(_options.Wait + longer, [this] { return Offers::AreComplete(Nodes()); });
+        const double everybody = SecondsToHearEverybody();
+        until = everybody > until ? std::min(everybody, Patience()) : Patience();
+        hasEnded = WaitUntil(until, isDecided);
     }
+    return hasEnded;
+}
+
+void FleetSession::WaitForEverybody(const std::function<bool()> &isWhole)
+{
+    const auto ends = [&] { return Underway().empty() && IsAnybodyThere() && isWhole(); };
+    const double least = _announcements ? TwoAnnouncements : Everybody;
+    WaitUntil(_options.IsWaitGiven ? std::min(least, _options.Wait) : least, [] { return false; });
+    if (WaitUntil(_options.Wait, ends) || _options.IsWaitGiven)
+    {
+        return;
+    }
+    WaitUntil(Patience(), [&] { return Underway().empty(); });
+    if (IsAnybodyThere())
+    {
+        WaitUntil(std::max(Seconds(), _options.Wait) + Answers, ends);
+    }
+}
+
+double FleetSession::Patience() const
+{
+    return _options.Wait + (_announcements && !_options.IsWaitGiven ? Handshakes : 0.0);
+}
+
+double FleetSession::SecondsToHearEverybody() const
+{
+    return std::max(Offers::SecondsToHearEverybody(Nodes()), _announcements ? TwoAnnouncements : 0.0);
+}
+
+bool FleetSession::IsEverybodyHeard() const
+{
+    return Seconds() >= SecondsToHearEverybody() && Underway().empty();
+}
+
+std::vector<std::string> FleetSession::Underway() const
+{
+    if (!_announcements)
+    {
+        return {};
+    }
+    const std::set<std::string> names = Doctor::NodesWithKeys(_config.Domain, _announcements->Facts());
+    const std::set<std::string> heard = Heard();
+    std::vector<std::string> underway;
+    std::set_difference(names.begin(), names.end(), heard.begin(), heard.end(), std::back_inserter(underway));
+    return underway;
+}
+
+std::set<std::string> FleetSession::Heard() const
+{
+    const std::vector<std::string> tools = _explorer->Tools();
+    std::set<std::string> names(tools.begin(), tools.end());
+    for (const Node &node : Nodes())
+    {
+        names.insert(node.Name);
+    }
+    return names;
+}
+
+bool FleetSession::TellOfUnderway() const
+{
+    const std::vector<std::string> names = Underway();
+    if (names.empty())
+    {
+        return false;
+    }
+    Output::Talk(std::to_string(names.size()) +
+                 (names.size() == 1 ? " participant is" : " participants are") +
+                 " still being authenticated, or not let in: " +
+                 ListedNames(names, [](const std::string &name) { return name; }) +
+                 "; ask again, or give a longer --wait");
+    return true;
+}
+
+std::string FleetSession::NoSuchNode(const std::string &pattern) const
+{
+    return Offers::NoSuchNode(pattern, Nodes(), Seconds());
+}
+
+std::string FleetSession::TakenOf(const std::vector<std::string> &names) const
+{
+    std::vector<std::string> there = _explorer->Tools();
+    for (const Node &node : Nodes())
+    {
+        if (node.State != Gateway::NodeState::LOST)
+        {
+            there.push_back(node.Name);
+        }
+    }
+    const auto taken = std::find_first_of(names.begin(), names.end(), there.begin(), there.end());
+    return taken == names.end() ? "" : *taken;
+}
+
+std::string NameIsTaken(const std::string &name)
+{
+    return "there is a node `" + name + "`; two of one name would disturb each other";
+}
+
+std::map<std::string, FleetExplorer::Subscribers> FleetSession::SubscribersOf(
+    const std::vector<std::string> &messages)
+{
+    constexpr double limit = 2.0;  // the gateway answers at once, unless something is wrong with it
+    _explorer->LookForSubscribers(messages);
+    WaitUntil(Seconds() + limit, [this] { return _explorer->FoundSubscribers().has_value(); });
+    return _explorer->FoundSubscribers().value_or(std::map<std::string, FleetExplorer::Subscribers>());
 }
 
 double FleetSession::Seconds() const
@@ -95,19 +238,22 @@ double FleetSession::Seconds() const
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count();
 }
 
+std::unique_ptr<Doctor::NetworkTrial> FleetSession::Listen(const std::vector<int> &callIn) const
+{
+    return std::make_unique<Doctor::NetworkTrial>(Doctor::UsedBy(_config, Doctor::LookAtMachine().Interfaces),
+                                                  std::vector<Doctor::Interface>(), _config.Node, callIn,
+                                                  std::vector<int>{_config.Domain});
+}
+
 // Reports nodes with keys: such a fleet does not answer a tool without keys, but everybody can hear its
 // announcements.
 void FleetSession::TellOfKeys()
 {
-    constexpr double twoAnnouncements = 2.2;  // unless a budget makes them rarer
     try
     {
-        const Doctor::NetworkTrial trial(Doctor::UsedBy(_config, Doctor::LookAtMachine().Interfaces), {},
-                                         _config.Node, {_config.Domain});
-        const auto ends = [this] { return _wakeup.IsInterrupted(); };
-        WaitUntil(Seconds() + twoAnnouncements, ends);
-        const std::vector<Doctor::Finding> findings =
-            Doctor::OfKeys(_config, trial.Facts(), IsAnybodyThere());
+        const std::unique_ptr<Doctor::NetworkTrial> trial = Listen({_config.Domain});
+        WaitUntil(Seconds() + TwoAnnouncements, [this] { return _wakeup.IsInterrupted(); });
+        const std::vector<Doctor::Finding> findings = Doctor::OfKeys(_config, trial->Facts(), Heard());
         for (const Doctor::Finding &finding : findings)
         {
             Output::Talk(SafeText(finding.Text + " (" + finding.Advice + ")"));

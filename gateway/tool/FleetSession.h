@@ -8,7 +8,9 @@
 
 #include <chrono>
 #include <functional>
+#include <map>
 #include <memory>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -16,6 +18,11 @@
 
 #include "CommonOptions.h"
 #include "Wakeup.h"
+
+namespace Rabit::Tool::Doctor
+{
+class NetworkTrial;
+}
 
 namespace Rabit::Tool
 {
@@ -33,7 +40,8 @@ class FleetSession
 public:
     using Node = FleetExplorer::Node;
 
-    // Throws NetworkError.
+    // Throws NetworkError. If --node names this tool, first listens under another name, for 1.5 s as a rule;
+    // throws std::runtime_error if a node has that name.
     FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup);
     ~FleetSession();
 
@@ -45,13 +53,36 @@ public:
     static constexpr double Forever = 1e8;
     // Waits until `holds` returns true, for at most `seconds` from the start of the session.
     bool WaitUntil(double seconds, const std::function<bool()> &holds);
-    // Waits until `holds` returns true, for --wait seconds at most, but not for announcements that cannot
-    // come any more (Offers::AreAllThere). Returns the last result of `holds`. `pattern`: the nodes whose
+    // Waits until `holds` returns true, for Patience() at most, but not for announcements that cannot come
+    // any more (Offers::AreAllThere). Returns the last result of `holds`. `pattern`: the nodes whose
     // announcements matter.
     bool WaitForOffers(const std::string &pattern, const std::function<bool()> &holds);
-    // After --wait seconds: waits for announcements that are still lacking, as a node may be answering
-    // others, for 3 s at most, and not at all if --wait was given.
-    void WaitForRest();
+    // Waits until `isDecided` returns true, for Patience() at most, and also asks it when all nodes should
+    // have been heard. Returns its last result.
+    bool WaitUntilDecided(const std::function<bool()> &isDecided);
+    // Waits until all nodes that are there are heard, and `isWhole` returns true; for 1.5 s at least. Without
+    // --wait it waits 3 s longer than usual for what is still lacking, as a node may be answering others, and
+    // 15 s longer for nodes that are being authenticated.
+    void WaitForEverybody(const std::function<bool()> &isWhole);
+    // The longest time to wait for a node, in seconds from the start of the session: --wait, and without it
+    // longer than usual if this program has keys.
+    double Patience() const;
+    // True if every node that is there is heard, as far as this program can know. Nodes that beat more seldom
+    // than others may be missing.
+    bool IsEverybodyHeard() const;
+    // With keys: nodes with keys whose announcements came, and that are not heard, since they are being
+    // authenticated, or do not let this program in.
+    std::vector<std::string> Underway() const;
+    // The names of the nodes and of other tools that are heard.
+    std::set<std::string> Heard() const;
+    // Reports the names of Underway; false if there are none.
+    bool TellOfUnderway() const;
+    // Says why no live node fits the pattern.
+    std::string NoSuchNode(const std::string &pattern) const;
+    // The first of these names that a live node or another tool has; empty: none.
+    std::string TakenOf(const std::vector<std::string> &names) const;
+    // The readers of these messages, by message. To be called once.
+    std::map<std::string, FleetExplorer::Subscribers> SubscribersOf(const std::vector<std::string> &messages);
     // Makes WaitUntil ask `holds` again; any thread.
     void Notify() { _wakeup.Notify(); }
     // Seconds since the start of the session. Any thread.
@@ -64,6 +95,9 @@ public:
 
 private:
     void TellOfKeys();
+    // Listens for the announcements of participants; calls for them in those domains.
+    std::unique_ptr<Doctor::NetworkTrial> Listen(const std::vector<int> &callIn) const;
+    double SecondsToHearEverybody() const;
 
     const GatewayConfig _config;
     const CommonOptions &_options;
@@ -73,7 +107,11 @@ private:
     FleetExplorer *_explorer = nullptr;
     std::shared_ptr<Gateway::Fleet> _fleet = std::make_shared<Gateway::Fleet>();
     std::chrono::steady_clock::time_point _start = std::chrono::steady_clock::now();
+    std::unique_ptr<Doctor::NetworkTrial> _announcements;  // with keys
     std::thread _runner;
 };
+
+// The error line for a name that a node has.
+std::string NameIsTaken(const std::string &name);
 
 }  // namespace Rabit::Tool

@@ -83,6 +83,7 @@ int Run(const Options &options, Wakeup &wakeup)
     while (!wakeup.IsInterrupted())
     {
         follower.FollowNew();
+        follower.TellOfMissing();
         taps.Look();
         if (!lonely && !session.IsAnybodyThere() && session.Seconds() >= options.Common.Wait)
         {

@@ -14,6 +14,7 @@
 #include "Command.h"
 #include "CommonOptions.h"
 #include "Output.h"
+#include "PlayedFiles.h"
 #include "SafeText.h"
 #include "Table.h"
 #include "recording/mcap/FileSource.h"
@@ -52,11 +53,6 @@ std::string DateOf(std::uint64_t time)
     return text.data();
 }
 
-std::string RateOf(std::uint64_t messages, double seconds)
-{
-    return messages < 2 || seconds <= 0 ? "-" : Formatted("%.2f Hz", static_cast<double>(messages) / seconds);
-}
-
 // Returns a line about a merged file.
 std::string MergeText(const Mcap::TextMap &merge)
 {
@@ -75,6 +71,7 @@ struct Topic
     std::string Encoding;
     std::uint64_t Messages = 0;
     std::string Life;  // of a merged file: the node that recorded it, and the number of its life
+    std::uint16_t Channel = 0;
 };
 
 std::vector<Topic> TopicsOf(const Contents &contents)
@@ -89,7 +86,7 @@ std::vector<Topic> TopicsOf(const Contents &contents)
             {channel.Topic, schema == contents.Schemas.end() ? "" : schema->second.Name,
              channel.MessageEncoding,
              count == contents.Statistics.ChannelMessageCounts.end() ? 0 : count->second,
-             recorder.empty() ? "" : recorder + " " + Mcap::ValueOf(channel.Metadata, "rabit.life")});
+             recorder.empty() ? "" : recorder + " " + Mcap::ValueOf(channel.Metadata, "rabit.life"), id});
     }
     std::sort(topics.begin(), topics.end(),
               [](const Topic &left, const Topic &right)
@@ -129,13 +126,24 @@ bool ShowJson(const std::string &file, std::uint64_t size, const Contents &conte
                            {"problems", contents.Problems}});
 }
 
-bool ShowText(const std::string &file, std::uint64_t size, const Contents &contents)
+// Returns the rate from the first to the last message, or over the whole file if these are not known.
+std::string RateOf(const Topic &topic, Mcap::ByteSource &source, const Contents &contents)
+{
+    const auto span = SpanOf(source, contents, topic.Channel);
+    const double seconds =
+        span ? 1e-9 * static_cast<double>(span->second - span->first) : SecondsOf(contents);
+    const std::uint64_t periods = topic.Messages - (span && topic.Messages > 0 ? 1 : 0);
+    return topic.Messages < 2 || seconds <= 0 ? "-"
+                                              : Formatted("%.2f Hz", static_cast<double>(periods) / seconds);
+}
+
+bool ShowText(const std::string &file, Mcap::ByteSource &source, const Contents &contents)
 {
     const double seconds = SecondsOf(contents);
     const Mcap::TextMap node = MetadataOf(contents, "rabit.node");
     std::vector<std::vector<std::string>> head;
     head.push_back({"file", SafeText(file)});
-    head.push_back({"size", Formatted("%.3f MB", 1e-6 * static_cast<double>(size))});
+    head.push_back({"size", Formatted("%.3f MB", 1e-6 * static_cast<double>(source.Size()))});
     if (!node.empty())
     {
         std::string text = Mcap::ValueOf(node, "node");
@@ -177,7 +185,7 @@ bool ShowText(const std::string &file, std::uint64_t size, const Contents &conte
     for (const Topic &topic : topics)
     {
         table.push_back({SafeText(topic.Name), SafeText(topic.Type), std::to_string(topic.Messages),
-                         RateOf(topic.Messages, seconds)});
+                         RateOf(topic, source, contents)});
         if (isMerged)
         {
             table.back().push_back(SafeText(topic.Life));
@@ -197,10 +205,15 @@ int Run(const Options &options)
     for (const std::string &file : options.Files)
     {
         Mcap::FileSource source(file);
+        if (!options.Json && !Mcap::IsRecording(source))
+        {
+            Output::Talk(NoRecording(file));
+            good = false;
+            continue;
+        }
         const Contents contents = options.Scan ? Mcap::ScanContents(source) : Mcap::ReadContents(source);
         good = good && contents.Problems.empty() && MetadataOf(contents, "rabit.losses").empty();
-        if (!(options.Json ? ShowJson(file, source.Size(), contents)
-                           : ShowText(file, source.Size(), contents)))
+        if (!(options.Json ? ShowJson(file, source.Size(), contents) : ShowText(file, source, contents)))
         {
             return Good;
         }

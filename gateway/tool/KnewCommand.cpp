@@ -9,14 +9,17 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <stdexcept>
 #include <string>
 
 #include "Command.h"
 #include "CommonOptions.h"
 #include "Output.h"
+#include "PlayedFiles.h"
 #include "SafeText.h"
 #include "Table.h"
 #include "TimeText.h"
+#include "names/ListedNames.h"
 #include "names/NamePattern.h"
 #include "recording/FolderDisk.h"
 #include "recording/mcap/FileSource.h"
@@ -60,6 +63,10 @@ public:
     explicit Asked(const Options &options)
         : Source(options.File), Contents(Mcap::ReadContents(Source)), Known(Contents), _options(options)
     {
+        if (!Mcap::IsRecording(Source))
+        {
+            throw std::runtime_error(NoRecording(options.File));
+        }
         for (const std::string &problem : Contents.Problems)
         {
             Output::Talk(problem);
@@ -95,9 +102,35 @@ public:
         return life == Known.Lives.end() ? otherwise : LifeText(node, life->Number);
     }
     bool IsGood() const { return Contents.Problems.empty(); }
+    // Reports why no stream has those names, with the names that there are.
     int NothingThere() const
     {
-        Output::Talk(_options.Knower + " knew no " + _options.What + " in " + _options.File);
+        std::set<std::string> knowers;
+        std::set<std::string> known;
+        for (const KnowerLife &life : Known.Lives)
+        {
+            knowers.insert(life.Node);
+        }
+        for (const KnownStream &stream : Known.Streams)
+        {
+            if (MatchesAny({_options.Knower}, LifeOf(stream).Node))
+            {
+                known.insert(stream.Node + "/" + stream.Message);
+            }
+        }
+        const auto listed = [](const std::set<std::string> &names)
+        {
+            const std::vector<std::string> list(names.begin(), names.end());
+            return list.empty() ? "nothing" : ListedNames(list, [](const std::string &name) { return name; });
+        };
+        const bool isThere =
+            std::any_of(knowers.begin(), knowers.end(),
+                        [this](const std::string &node) { return MatchesAny({_options.Knower}, node); });
+        Output::Talk(isThere ? _options.Knower + " knew no " + _options.What + " in " + _options.File +
+                                   "; it knew " + listed(known)
+                             : _options.File + " holds nothing of what " + _options.Knower +
+                                   " knew; it has what was known to " + listed(knowers) +
+                                   " (a node records what it knows with `record:` in its configuration)");
         return ProblemFound;
     }
 

@@ -120,7 +120,8 @@ void ShowText(const Options &options, const Lives &lives, const MergePlan &plan,
         Output::Line(line);
     }
     const auto worst = plan.WorstBound();
-    Output::Line(SafeText(options.To) + ": " + std::to_string(messages) + " messages by the clock of " +
+    Output::Line(SafeText(options.To) + ": " + std::to_string(messages) + " messages (and " +
+                 std::to_string(merged.TimeLines) + " about the time line) by the clock of " +
                  SafeText(NameOf(lives, plan, plan.TimeLine)) +
                  (worst ? ", wrong by " + Bound(worst) + " at most" : ", how wrong is not known"));
 }

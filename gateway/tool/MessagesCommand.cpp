@@ -85,16 +85,12 @@ using Subscribers = std::map<std::string, FleetExplorer::Subscribers>;
 
 Subscribers SubscribersOf(const std::vector<Offers::Message> &messages, FleetSession &session)
 {
-    constexpr double limit = 2.0;  // the gateway answers at once, unless something is wrong with it
     std::vector<std::string> names;
     for (const Offers::Message &message : messages)
     {
         names.push_back(message.Name);
     }
-    FleetExplorer &explorer = session.Explorer();
-    explorer.LookForSubscribers(names);
-    session.WaitUntil(session.Seconds() + limit, [&] { return explorer.FoundSubscribers().has_value(); });
-    return explorer.FoundSubscribers().value_or(Subscribers());
+    return session.SubscribersOf(names);
 }
 
 std::string Joined(const std::vector<std::string> &words)
@@ -119,13 +115,13 @@ std::string TextOf(const FleetExplorer::Subscribers &subscribers)
 
 int Run(const Options &all, Wakeup &wakeup)
 {
-    constexpr double everybody = 1.5;
     const CommonOptions &options = all.Common;
     FleetSession session(ConfigOf(options), options, wakeup);
-    session.WaitUntil(std::min(everybody, options.Wait), [] { return false; });
-    session.WaitUntil(options.Wait, [&session]
-                      { return session.IsAnybodyThere() && Offers::AreComplete(session.Nodes()); });
-    session.WaitForRest();
+    session.WaitForEverybody([&session] { return Offers::AreComplete(session.Nodes()); });
+    if (wakeup.IsInterrupted())
+    {
+        return Interrupted;
+    }
     if (!session.IsAnybodyThere())
     {
         return session.NobodyThere();
@@ -186,7 +182,8 @@ int Run(const Options &all, Wakeup &wakeup)
     {
         Output::Talk("not all nodes have announced themselves yet; ask again in 2 s");
     }
-    return differences.empty() && Offers::AreComplete(nodes) ? Good : ProblemFound;
+    const bool isWhole = !session.TellOfUnderway() && Offers::AreComplete(nodes);
+    return differences.empty() && isWhole ? Good : ProblemFound;
 }
 
 }  // namespace

@@ -34,11 +34,11 @@ std::vector<Gateway::Problem> ProblemsOfNodes(const Gateway::Fleet &fleet)
     return problems;
 }
 
-bool AreProblemsKnown(const Gateway::Fleet &fleet)
+bool AreProblemsKnown(const std::vector<FleetExplorer::Node> &nodes)
 {
-    return std::all_of(fleet.nodes.begin(), fleet.nodes.end(),
-                       [](const Gateway::NodeStatus &status)
-                       { return status.problems == 0 || !status.problem_texts.empty(); });
+    return std::all_of(nodes.begin(), nodes.end(),
+                       [](const FleetExplorer::Node &node)
+                       { return node.AreProblemsKnown || node.State == Gateway::NodeState::LOST; });
 }
 
 }  // namespace Rabit::Tool

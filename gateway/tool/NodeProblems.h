@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/gateway/Fleet.h>
+#include <rabit/gateway/FleetExplorer.h>
 
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace Rabit::Tool
 // If their texts have not come, or not all, a line tells how many there are.
 std::vector<Gateway::Problem> ProblemsOfNodes(const Gateway::Fleet &fleet);
 
-// True if the texts of all nodes that have problems have come.
-bool AreProblemsKnown(const Gateway::Fleet &fleet);
+// True if all live nodes have told their problems, or that they have none.
+bool AreProblemsKnown(const std::vector<FleetExplorer::Node> &nodes);
 
 }  // namespace Rabit::Tool

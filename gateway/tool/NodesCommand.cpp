@@ -64,7 +64,8 @@ const FleetSession::Node *Find(const std::vector<FleetSession::Node> &nodes, con
 
 // Returns all problems, in lines.
 std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
-                                         const std::vector<FleetSession::Node> &nodes)
+                                         const std::vector<FleetSession::Node> &nodes,
+                                         const std::vector<std::string> &underway)
 {
     std::vector<Gateway::Problem> problems(fleet.problems.begin(), fleet.problems.end());
     for (const Gateway::NodeStatus &node : fleet.nodes)
@@ -79,15 +80,29 @@ std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
     }
     const std::vector<Gateway::Problem> own = ProblemsOfNodes(fleet);
     problems.insert(problems.end(), own.begin(), own.end());
+    const auto add = [&problems](const std::string &node, const std::string &reason)
+    {
+        Gateway::Problem &problem = problems.emplace_back();
+        problem.subject = "node " + node;
+        problem.node = node;
+        problem.reason = reason;
+    };
     for (const FleetSession::Node &node : nodes)
     {
         if (!node.Offers && node.State != Gateway::NodeState::LOST)
         {
-            Gateway::Problem &problem = problems.emplace_back();
-            problem.subject = "node " + node.Name;
-            problem.node = node.Name;
-            problem.reason = "its announcement has not come; ask again in 2 s";
+            add(node.Name, "its announcement has not come; ask again in 2 s");
         }
+        if (!node.AreProblemsKnown && node.State != Gateway::NodeState::LOST)
+        {
+            add(node.Name, "its own problems are not known yet; ask again in 2 s");
+        }
+    }
+    for (const std::string &name : underway)
+    {
+        add(name,
+            "it is still being authenticated, or does not let this program in; ask again, or give a "
+            "longer --wait");
     }
     for (const std::string &line : Offers::Differences(nodes))
     {
@@ -184,7 +199,8 @@ bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node
 bool IsWhole(FleetSession &session)
 {
     const Gateway::Fleet fleet = session.Fleet();
-    return !fleet.nodes.empty() && Offers::AreComplete(session.Nodes()) && AreProblemsKnown(fleet) &&
+    return !fleet.nodes.empty() && Offers::AreComplete(session.Nodes()) &&
+           AreProblemsKnown(session.Nodes()) &&
            std::all_of(fleet.nodes.begin(), fleet.nodes.end(),
                        [](const Gateway::NodeStatus &node) {
                            return node.state == Gateway::NodeState::LOST || std::isfinite(node.round_trip_s);
@@ -195,28 +211,28 @@ int Show(FleetSession &session, const Options &options, bool &stillRead)
 {
     const Gateway::Fleet fleet = session.Fleet();
     const std::vector<FleetSession::Node> nodes = session.Nodes();
-    const std::vector<Gateway::Problem> problems = ProblemsOf(fleet, nodes);
+    const std::vector<Gateway::Problem> problems = ProblemsOf(fleet, nodes, session.Underway());
     stillRead = options.Common.Json ? ShowJson(fleet, nodes, problems) : ShowTable(fleet, nodes, problems);
     return problems.empty() ? Good : ProblemFound;
 }
 
 int Run(const Options &options, Wakeup &wakeup)
 {
-    // Seconds in which most nodes are heard. Nodes that beat more seldom need --wait.
-    constexpr double everybody = 1.5;
     GatewayConfig config = ConfigOf(options.Common);
     config.ProblemsOf = {"*"};
     FleetSession session(config, options.Common, wakeup);
-    session.WaitUntil(std::min(everybody, options.Common.Wait), [] { return false; });
-    session.WaitUntil(options.Common.Wait, [&session] { return IsWhole(session); });
-    session.WaitForRest();
+    session.WaitForEverybody([&session] { return IsWhole(session); });
+    if (wakeup.IsInterrupted() && !options.Watch)
+    {
+        return Interrupted;
+    }
     if (!session.IsAnybodyThere() && !options.Watch)
     {
         return session.NobodyThere();
     }
     bool stillRead = true;
     int code = Good;
-    for (double second = options.Common.Wait;; second += 1.0)
+    for (double second = session.Seconds();; second += 1.0)
     {
         if (options.Watch && !options.Common.Json)
         {

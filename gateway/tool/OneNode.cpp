@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "Offers.h"
 #include "Output.h"
 
 namespace Rabit::Tool
@@ -43,22 +42,21 @@ std::optional<FleetExplorer::Answer> Request(FleetSession &session, const std::s
 
 int WaitForNode(FleetSession &session, const CommonOptions &options, const std::string &node)
 {
+    if (node.find_first_of("*?") != std::string::npos)
+    {
+        Output::Talk("`" + node + "`: wildcards are not taken here; name one node");
+        return Usage;
+    }
     const auto isThere = [&]
     {
         const auto nodes = session.Nodes();
         const FleetSession::Node *found = FindNode(nodes, node);
         return found != nullptr && found->State != Gateway::NodeState::LOST;
     };
-    // Seconds in which a node that does not save on beats is heard.
-    constexpr double everybody = 1.5;
-    const auto isDecided = [&] {
-        return isThere() ||
-               (!options.IsWaitGiven && session.IsAnybodyThere() && session.Seconds() >= everybody);
-    };
-    if (!session.WaitUntil(std::min(everybody, options.Wait), isDecided))
-    {
-        session.WaitUntil(options.Wait, isDecided);
-    }
+    // The commands about one node request no announcements, so this waits for beats alone.
+    const auto isDecided = [&]
+    { return isThere() || (!options.IsWaitGiven && session.IsAnybodyThere() && session.IsEverybodyHeard()); };
+    session.WaitUntilDecided(isDecided);
     if (isThere())
     {
         return Good;
@@ -67,7 +65,8 @@ int WaitForNode(FleetSession &session, const CommonOptions &options, const std::
     {
         return session.NobodyThere();
     }
-    Output::Talk(Offers::NoSuchNode(node, session.Nodes(), session.Seconds()));
+    Output::Talk(session.NoSuchNode(node));
+    session.TellOfUnderway();
     return ProblemFound;
 }
 

@@ -15,8 +15,8 @@ namespace Rabit::Tool
 // The configuration of a tool that requests no announcements.
 GatewayConfig ConfigWithoutOffers(const CommonOptions &options);
 
-// Waits until the node is heard, for --wait seconds at most, and without --wait for 1.5 s if others are
-// heard. Returns Good, or reports that it is not there and returns the exit code.
+// Waits until the node is heard, for FleetSession::Patience() at most, and without --wait only until all
+// nodes are heard. Returns Good, or reports that it is not there and returns the exit code.
 int WaitForNode(FleetSession &session, const CommonOptions &options, const std::string &node);
 
 // Requests a report, and waits for it for 10 s, which is long unless the channel is full. Empty: reports that

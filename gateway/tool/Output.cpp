@@ -4,12 +4,28 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cerrno>
 #include <cstdio>
+#include <system_error>
 
+#include "CommonOptions.h"
 #include "SafeText.h"
 
 namespace Rabit::Tool::Output
 {
+namespace
+{
+
+int firstError = 0;  // of a write to standard output, as errno
+
+bool Noted(bool isWritten)
+{
+    firstError = isWritten || firstError != 0 ? firstError : errno;
+    return isWritten;
+}
+
+}  // namespace
+
 std::string JsonText(const nlohmann::ordered_json &value)
 {
     return value.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
@@ -17,8 +33,21 @@ std::string JsonText(const nlohmann::ordered_json &value)
 
 bool Line(std::string_view line)
 {
-    return std::fwrite(line.data(), 1, line.size(), stdout) == line.size() &&
-           std::fputc('\n', stdout) != EOF && std::fflush(stdout) == 0;
+    return Noted(std::fwrite(line.data(), 1, line.size(), stdout) == line.size() &&
+                 std::fputc('\n', stdout) != EOF && std::fflush(stdout) == 0);
+}
+
+int Ended(int code)
+{
+    Noted(std::fflush(stdout) == 0);
+    // Some file systems report a full disk only here. If standard output was closed before, nobody wants it.
+    Noted(::close(STDOUT_FILENO) == 0 || errno == EBADF);
+    if (firstError == 0 || firstError == EPIPE)
+    {
+        return code;
+    }
+    Talk("cannot write: " + std::generic_category().message(firstError));
+    return code == Good ? ProblemFound : code;
 }
 
 bool Object(const nlohmann::ordered_json &object)

@@ -9,9 +9,12 @@
 namespace Rabit::Tool::Output
 {
 
-// Writes the line and a line feed at once. False if nobody reads any more: the program then ends, without an
-// error.
+// Writes the line and a line feed at once. False if it could not be written: the program then ends, and Ended
+// tells why.
 bool Line(std::string_view line);
+// Call once, at the end of the program, with its exit code. Writes what is buffered. If standard output took
+// not all of the data, reports why and returns ProblemFound; a closed pipe changes nothing.
+int Ended(int code);
 // Returns the text of the value in one line, in ASCII.
 std::string JsonText(const nlohmann::ordered_json &value);
 // Writes one object in one line. Numbers that may be beyond 2^53 belong in it as strings: most readers of

@@ -20,6 +20,7 @@
 #include "ReplayFleet.h"
 #include "ReplayNetwork.h"
 #include "TimeText.h"
+#include "names/ListedNames.h"
 #include "names/NamePattern.h"
 
 namespace Rabit::Tool
@@ -132,23 +133,12 @@ bool AreFree(const std::vector<std::string> &names, const GatewayConfig &network
     config.Tool->AsksOf = names;
     FleetSession session(config, options.Common, wakeup);
     std::string taken;
-    const auto isTaken = [&]
-    {
-        for (const FleetSession::Node &node : session.Nodes())
-        {
-            const bool isThere = node.State != Gateway::NodeState::LOST;
-            if (isThere && std::find(names.begin(), names.end(), node.Name) != names.end())
-            {
-                taken = node.Name;
-            }
-        }
-        return !taken.empty();
-    };
+    const auto isTaken = [&] { return !(taken = session.TakenOf(names)).empty(); };
     if (!session.WaitUntil(std::max(options.Common.Wait, ShortestListening), isTaken))
     {
         return true;
     }
-    Output::Talk("there is a node `" + taken + "`; two of one name would disturb each other (--rename)");
+    Output::Talk(NameIsTaken(taken) + " (--rename)");
     return false;
 }
 
@@ -198,6 +188,20 @@ int Tell(const Options &options, const PlayedFiles &files, const ReplayFleet &fl
     return problems.empty() && counts.Undecodable == 0 && counts.Undelivered == 0 ? Good : ProblemFound;
 }
 
+void TellOfPlace(const ReplayTimeline::Settings &settings, const ReplayFleet &fleet,
+                 const GatewayConfig &network)
+{
+    const double recorded = 1e-9 * static_cast<double>(settings.To - settings.From);
+    const std::string length = settings.Loops         ? "again and again"
+                               : settings.Rate == 0.0 ? "as fast as possible"
+                                                      : "for " + DurationText(recorded / settings.Rate);
+    Output::Talk("plays " + Counted(fleet.Names().size(), "node") + " " + length + ", in domain " +
+                 std::to_string(network.Domain) + " on " +
+                 (network.Interfaces.empty()
+                      ? "all interfaces"
+                      : ListedNames(network.Interfaces, [](const std::string &name) { return name; })));
+}
+
 int Play(const Options &options, PlayedFiles &files, const Replay::NodeRenames &renames,
          const ReplayTimeline::Settings &settings, Wakeup &wakeup)
 {
@@ -218,6 +222,7 @@ int Play(const Options &options, PlayedFiles &files, const Replay::NodeRenames &
     {
         return ProblemFound;
     }
+    TellOfPlace(settings, fleet, network);
     if (settings.Rate == 0.0)
     {
         fleet.KeepAll();

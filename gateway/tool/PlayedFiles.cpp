@@ -1,8 +1,13 @@
 #include "PlayedFiles.h"
 
+#include <algorithm>
+#include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "Output.h"
+#include "names/ListedNames.h"
+#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {
@@ -17,7 +22,39 @@ void AddNodes(std::vector<std::string> &patterns)
     }
 }
 
+// Throws std::runtime_error for a pattern that no queue of the files fits.
+void CheckQueues(const std::vector<const Mcap::Contents *> &contents,
+                 const std::vector<std::string> &patterns)
+{
+    std::set<std::string> queues;
+    for (const Replay::ReplayStream &stream : Replay::PlanReplay(contents, {.Queues = {"*/*"}}).Streams)
+    {
+        if (stream.What == Replay::ReplayStream::Kind::Queue)
+        {
+            queues.insert(stream.Peer + "/" + stream.Name);
+        }
+    }
+    const std::vector<std::string> there(queues.begin(), queues.end());
+    for (const std::string &pattern : patterns)
+    {
+        if (std::none_of(there.begin(), there.end(),
+                         [&](const std::string &queue) { return MatchesPattern(pattern, queue); }))
+        {
+            throw std::runtime_error(
+                "--queues " + pattern + ": the recording has no message for such a queue" +
+                (there.empty()
+                     ? ", nor for any other"
+                     : "; there: " + ListedNames(there, [](const std::string &name) { return name; })));
+        }
+    }
+}
+
 }  // namespace
+
+std::string NoRecording(const std::string &file)
+{
+    return file + ": is no recording: it does not begin as an MCAP file";
+}
 
 PlayedFiles::PlayedFiles(const std::vector<std::string> &names, Replay::PlanSettings settings)
 {
@@ -37,6 +74,7 @@ PlayedFiles::PlayedFiles(const std::vector<std::string> &names, Replay::PlanSett
     AddNodes(settings.Include);
     AddNodes(settings.Exclude);
     AddNodes(settings.Queues);
+    CheckQueues(contents, settings.Queues);
     _plan = Replay::PlanReplay(contents, settings);
     _messages = std::make_unique<Replay::RecordedMessages>(std::move(files), _plan);
 }

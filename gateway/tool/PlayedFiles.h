@@ -11,6 +11,9 @@
 namespace Rabit::Tool
 {
 
+// The error line for a file that does not begin as an MCAP file.
+std::string NoRecording(const std::string &file);
+
 // The files of a replay, and the part of them that is played.
 class PlayedFiles
 {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "CommonOptions.h"
+#include "FleetSession.h"
 #include "Output.h"
 
 namespace Rabit::Tool
@@ -103,7 +104,7 @@ bool Playing::LookAround()
     const std::string twice = _fleet.TwiceName();
     if (!twice.empty())
     {
-        Output::Talk("there is a node `" + twice + "`; two of one name would disturb each other");
+        Output::Talk(NameIsTaken(twice));
     }
     return twice.empty();
 }

@@ -16,6 +16,7 @@
 #include "IdlFiles.h"
 #include "Offers.h"
 #include "Output.h"
+#include "names/ListedNames.h"
 #include "names/NamePattern.h"
 #include "names/QosProfileWords.h"
 
@@ -64,16 +65,9 @@ Had FromFleet(const Options &options, const std::string &node, Wakeup &wakeup)
         return found == types.end() ? Offers::Definitions() : found->second;
     };
     // Listens for --wait seconds for a node of that name: two nodes of one name disturb each other.
-    const auto isTaken = [&]
+    if (session.WaitUntil(options.Common.Wait, [&] { return !session.TakenOf({node}).empty(); }))
     {
-        const auto nodes = session.Nodes();
-        return std::any_of(nodes.begin(), nodes.end(),
-                           [&node](const FleetSession::Node &other)
-                           { return other.Name == node && other.State != Gateway::NodeState::LOST; });
-    };
-    if (session.WaitUntil(options.Common.Wait, isTaken))
-    {
-        Output::Talk("there is a node `" + node + "`; two of one name would disturb each other");
+        Output::Talk(NameIsTaken(node));
         return {nullptr, ProblemFound};
     }
     if (!options.Idl.empty())
@@ -107,6 +101,14 @@ Had FromFleet(const Options &options, const std::string &node, Wakeup &wakeup)
         Output::Talk(type.Reason);
     }
     return {type.Type, type.Type ? Good : ProblemFound};
+}
+
+// The types, other than that of the post, in which others read the message.
+std::vector<std::string> OtherTypes(const std::string &name, const std::string &type, FleetSession &session)
+{
+    std::vector<std::string> types = session.SubscribersOf({name})[name].Types;
+    std::erase(types, type);
+    return types;
 }
 
 int Post(const Options &options, const std::string &node, const std::string &name, DynamicMessage &message,
@@ -154,7 +156,7 @@ int Post(const Options &options, const std::string &node, const std::string &nam
         const double next = options.Rate > 0.0 ? begin + static_cast<double>(posts) / options.Rate : end;
         if (session.WaitUntil(std::min(next, end), isTwice))
         {
-            Output::Talk("there is a node `" + node + "`; two of one name would disturb each other");
+            Output::Talk(NameIsTaken(node));
             return ProblemFound;
         }
     }
@@ -171,7 +173,11 @@ int Post(const Options &options, const std::string &node, const std::string &nam
     }
     if (!anybody)
     {
-        Output::Talk("nobody subscribes to `" + name + "`, or nobody from `" + node + "`");
+        const auto types = OtherTypes(name, options.Type, session);
+        const auto same = [](const std::string &type) { return type; };
+        Output::Talk(types.empty() ? "nobody subscribes to `" + name + "`, or nobody from `" + node + "`"
+                                   : "subscribers of `" + name + "` want " + ListedNames(types, same) +
+                                         ", not `" + options.Type + "`");
     }
     return anybody ? Good : ProblemFound;
 }

@@ -28,6 +28,7 @@
 #include "recording/FolderDisk.h"
 #include "recording/MessageTaps.h"
 #include "recording/QueueStreams.h"
+#include "recording/RecordingFiles.h"
 
 namespace Rabit::Tool
 {
@@ -117,9 +118,18 @@ private:
 
 bool Tell(const Options &options, const RecordingStatus &status)
 {
+    std::vector<std::string> topics;
+    std::uint64_t lost = 0;
     for (const auto &[topic, count] : status.Lost)
     {
-        Output::Talk(topic + ": " + std::to_string(count) + " messages were not recorded");
+        topics.push_back(topic);
+        lost += count;
+    }
+    if (lost > 0)
+    {
+        Output::Talk(std::to_string(lost) + (lost == 1 ? " message was" : " messages were") +
+                     " not recorded, of " +
+                     ListedNames(topics, [](const std::string &topic) { return topic; }));
     }
     if (options.Common.Json)
     {
@@ -181,6 +191,10 @@ int Run(const Options &options, Wakeup &wakeup)
     config.Tap = std::make_shared<QueueStreams>(target, *config.Record);
     target->Inbox().SetMetadata("rabit.node", {{"node", config.Node}, {"kind", "rabit record"}});
     config.Tool->AsksOf = FleetFollower::NodesOf(options.What);
+    if (options.Free < RecordingFiles::LeastMargin)
+    {
+        Output::Talk("--free: at least 16 MiB of the disk stay free, for the end of the file");
+    }
     Progress progress(options);
     bool anybody = false;
     // The length counts from the first message that is followed.
@@ -194,6 +208,7 @@ int Run(const Options &options, Wakeup &wakeup)
         while (!wakeup.IsInterrupted() && session.Seconds() < end())
         {
             TellOfNew(follower.FollowNew());
+            follower.TellOfMissing();
             taps.Look();
             anybody = anybody || session.IsAnybodyThere();
             if (!begin && follower.Messages() > 0)
@@ -211,12 +226,18 @@ int Run(const Options &options, Wakeup &wakeup)
         }
     }
     target->End();
-    progress.Look(target->Status(), 0.0);
     if (!begin)
     {
-        Output::Talk("nobody publishes such a message");
+        // A file holds nothing but what this program knew of the fleet.
+        if (target->Status().Files == 1)
+        {
+            FolderDisk(options.Folder).Remove(target->Status().LastFile);
+        }
+        Output::Talk("nobody publishes such a message; nothing was recorded");
+        return ProblemFound;
     }
-    return Tell(options, target->Status()) && begin ? Good : ProblemFound;
+    progress.Look(target->Status(), 0.0);
+    return Tell(options, target->Status()) ? Good : ProblemFound;
 }
 
 }  // namespace
@@ -232,7 +253,7 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--to", options->Folder, "Folder of the files (default: this one)");
     command->add_option("--name", options->Name, "How their names begin (default: fleet)");
     command->add_option("--for", options->For, "Seconds from the first message (default: until Ctrl-C)")
-        ->check(CLI::PositiveNumber);
+        ->check(AboveZero());
     command
         ->add_option("--split-size", options->SplitSize, "End a file at this size, as 500MB (default: 1 GiB)")
         ->transform(Size(RecordRanges::SplitSize));

@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "Command.h"
 #include "CommonOptions.h"
 #include "Output.h"
+#include "PlayedFiles.h"
 #include "Wakeup.h"
 #include "recording/FolderDisk.h"
 #include "recording/mcap/FileSource.h"
@@ -46,12 +46,6 @@ private:
     Mcap::ByteSource &_source;
     const Wakeup &_wakeup;
 };
-
-bool IsRecording(Mcap::ByteSource &source)
-{
-    std::array<std::uint8_t, Mcap::Magic.size()> begin{};
-    return source.Size() >= begin.size() && source.Read(0, begin) && begin == Mcap::Magic;
-}
 
 std::string TargetOf(const Options &options)
 {
@@ -87,9 +81,9 @@ void Tell(const Options &options, const std::string &target, const Mcap::Recover
 int Run(const Options &options, const Wakeup &wakeup)
 {
     Mcap::FileSource whole(options.File);
-    if (!IsRecording(whole))
+    if (!Mcap::IsRecording(whole))
     {
-        Output::Talk(options.File + ": is no recording: it does not begin as an MCAP file");
+        Output::Talk(NoRecording(options.File));
         return ProblemFound;
     }
     InterruptibleSource source(whole, wakeup);

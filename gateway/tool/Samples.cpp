@@ -56,13 +56,14 @@ std::vector<const FleetSession::Node *> Samples::Publishers(
     return publishers;
 }
 
-int Samples::NobodyPublishes(const std::vector<FleetSession::Node> &nodes) const
+void TellNobodyPublishes(const FleetSession &session, const std::string &pattern, const std::string &message)
 {
+    const std::vector<FleetSession::Node> nodes = session.Nodes();
     std::vector<std::string> matching;
     std::vector<std::string> messages;
     for (const FleetSession::Node &node : nodes)
     {
-        if (node.State == Gateway::NodeState::LOST || !MatchesPattern(_pattern, node.Name))
+        if (node.State == Gateway::NodeState::LOST || !MatchesPattern(pattern, node.Name))
         {
             continue;
         }
@@ -79,15 +80,15 @@ int Samples::NobodyPublishes(const std::vector<FleetSession::Node> &nodes) const
     }
     if (matching.empty())
     {
-        Output::Talk(Offers::NoSuchNode(_pattern, nodes, _session.Seconds()));
+        Output::Talk(session.NoSuchNode(pattern));
     }
     else
     {
         const auto same = [](const std::string &name) { return name; };
         Output::Talk(ListedNames(matching, same) + (matching.size() == 1 ? " does" : " do") +
-                     " not publish `" + _message + "`" + NearestWordHint(_message, messages));
+                     " not publish `" + message + "`" + NearestWordHint(message, messages));
     }
-    return ProblemFound;
+    session.TellOfUnderway();
 }
 
 int Samples::Open(double until)
@@ -101,7 +102,8 @@ int Samples::Open(double until)
     const auto publishers = Publishers(nodes);
     if (publishers.empty())
     {
-        return NobodyPublishes(nodes);
+        TellNobodyPublishes(_session, _pattern, _message);
+        return ProblemFound;
     }
     const Gateway::PublishedMessage &first = *FindIn(*publishers.front(), _message);
     _typeName = first.type;

@@ -61,7 +61,6 @@ private:
     };
 
     std::vector<const FleetSession::Node *> Publishers(const std::vector<FleetSession::Node> &nodes) const;
-    int NobodyPublishes(const std::vector<FleetSession::Node> &nodes) const;
     void Follow(const std::string &node);
     void FollowNew();
 
@@ -74,6 +73,9 @@ private:
     std::shared_ptr<Inbox> _inbox = std::make_shared<Inbox>();
     std::map<std::string, std::shared_ptr<DynamicMessage>> _followed;
 };
+
+// Reports that no node that fits the pattern publishes the message, with the nearest right word.
+void TellNobodyPublishes(const FleetSession &session, const std::string &pattern, const std::string &message);
 
 // Joins the network for the values of `what` alone, and calls the body once a node publishes it. Returns the
 // body's result; or reports why it was not called, and returns the exit code.

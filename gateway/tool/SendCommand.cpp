@@ -131,7 +131,7 @@ std::string WhyNobody(const Destination &to, const std::string &type, const Flee
     const auto same = [](const std::string &name) { return name; };
     if (!any)
     {
-        return Offers::NoSuchNode(to.Node, nodes, session.Seconds());
+        return session.NoSuchNode(to.Node);
     }
     if (!anyQueue)
     {
@@ -230,6 +230,12 @@ private:
 int Run(const Options &options, Wakeup &wakeup)
 {
     const auto to = Split(options.Address);
+    if (to && to->Node != "*" && options.Address.find_first_of("*?") != std::string::npos)
+    {
+        Output::Talk("`" + options.Address + "`: wildcards are not taken here; name one node, or `*/" +
+                     to->Queue + "` for all");
+        return Usage;
+    }
     if (!to || !(to->Node == "*" || IsNodeName(to->Node)) || !IsMessageName(to->Queue))
     {
         Output::Talk("`" + options.Address + "` is no queue; expected NODE/QUEUE, as uav1/MissionControl");
@@ -244,7 +250,7 @@ int Run(const Options &options, Wakeup &wakeup)
     const auto takers = [&] { return TakersOf(*to, options.Type, session.Nodes()); };
     if (to->Node == "*")
     {
-        session.WaitUntil(1.5, [] { return false; });
+        session.WaitForEverybody([&session] { return Offers::AreComplete(session.Nodes()); });
     }
     session.WaitForOffers(to->Node, [&] { return !takers().empty(); });
     if (!session.IsAnybodyThere())
@@ -255,6 +261,7 @@ int Run(const Options &options, Wakeup &wakeup)
     if (found.empty())
     {
         Output::Talk(WhyNobody(*to, options.Type, session));
+        session.TellOfUnderway();
         return ProblemFound;
     }
     std::vector<std::string> holders;
@@ -279,7 +286,7 @@ int Run(const Options &options, Wakeup &wakeup)
         return ProblemFound;
     }
     Sender sender(options, session, wakeup, type.Type);
-    bool good = holders.size() == found.size();
+    bool good = holders.size() == found.size() && !(to->Node == "*" && session.TellOfUnderway());
     if (options.Value != "-")
     {
         return sender.Send(options.Value) && good ? Good : ProblemFound;

@@ -152,7 +152,7 @@ int Run(const Options &options, Wakeup &wakeup)
     constexpr double everybody = 1.5;
     FleetSession session(ConfigWithoutOffers(options.Common), options.Common, wakeup);
     session.WaitUntil(options.Common.IsWaitGiven ? options.Common.Wait : everybody, [] { return false; });
-    session.WaitUntil(options.Common.Wait, [&session] { return session.IsAnybodyThere(); });
+    session.WaitForEverybody([] { return true; });
     if (!session.IsAnybodyThere())
     {
         return session.NobodyThere();
@@ -161,13 +161,18 @@ int Run(const Options &options, Wakeup &wakeup)
     {
         const double end = session.Seconds() + std::max(options.Every, 2.0);
         const std::vector<Row> rows = Ask(session, end);
+        if (wakeup.IsInterrupted())
+        {
+            return Good;  // the last whole table stays
+        }
         if (!options.Once && !options.Common.Json)
         {
             Output::BeginScreen();
         }
-        if (!Show(rows, options.Common.Json) || options.Once || wakeup.IsInterrupted())
+        if (!Show(rows, options.Common.Json) || options.Once)
         {
             const bool isWhole =
+                !session.TellOfUnderway() &&
                 std::all_of(rows.begin(), rows.end(), [](const Row &row) { return row.second.has_value(); });
             return isWhole || !options.Once ? Good : ProblemFound;
         }

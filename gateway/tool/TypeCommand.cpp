@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 
 #include <rabit/idl/NearestWord.h>
@@ -52,6 +53,14 @@ std::vector<std::string> NamesIn(const std::vector<FleetSession::Node> &nodes)
     return names;
 }
 
+// Returns the hint at the nearest word. A type may be named without its modules.
+std::string HintFor(const std::string &name, const std::vector<std::string> &names)
+{
+    const auto whole = std::find_if(names.begin(), names.end(),
+                                    [&name](const std::string &one) { return one.ends_with("::" + name); });
+    return whole != names.end() ? "; did you mean `" + *whole + "`?" : NearestWordHint(name, names);
+}
+
 int Run(const Options &options, Wakeup &wakeup)
 {
     FleetSession session(ConfigOf(options.Common), options.Common, wakeup);
@@ -72,7 +81,8 @@ int Run(const Options &options, Wakeup &wakeup)
     if (found.empty())
     {
         Output::Talk("nobody announces a type or message `" + options.Name + "`" +
-                     NearestWordHint(options.Name, NamesIn(nodes)));
+                     HintFor(options.Name, NamesIn(nodes)));
+        session.TellOfUnderway();
         return ProblemFound;
     }
     const std::string name = TypeNamed(options.Name, nodes);

@@ -7,8 +7,10 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "Command.h"
@@ -54,9 +56,26 @@ std::string UnknownWord(CLI::App &app)
                : "there is no command `" + rest.front() + "`" + NearestWordHint(rest.front(), known);
 }
 
-}  // namespace
+// Names the variable of the environment that stands for the option which an error is about.
+void TellOfEnvironment(const std::string &error, const std::vector<std::string> &words)
+{
+    for (const auto &[option, variable] :
+         {std::pair("--domain", "RABIT_DOMAIN"), std::pair("--interface", "RABIT_INTERFACE"),
+          std::pair("--keys", "RABIT_KEYS")})
+    {
+        const char *const value = std::getenv(variable);
+        const bool isGiven =
+            std::any_of(words.begin(), words.end(),
+                        [option = option](const std::string &word) { return word.starts_with(option); });
+        if (value != nullptr && !isGiven && error.find(option) != std::string::npos)
+        {
+            Output::Talk(std::string(option) + " comes from the environment: " + variable + "=" + value);
+        }
+    }
+}
 
-int main(int argc, char **argv)
+// Returns the exit code.
+int RunProgram(int argc, char **argv)
 {
     CLI::App app("Looks at a fleet of Rabit nodes, and speaks to it.");
     app.set_version_flag("--version", "rabit " RABIT_VERSION_STRING);
@@ -111,7 +130,9 @@ int main(int argc, char **argv)
         const std::string unknown = error.get_exit_code() == 0 ? "" : UnknownWord(app);
         if (unknown.empty())
         {
-            return app.exit(error) == 0 ? Good : Usage;
+            const int code = app.exit(error) == 0 ? Good : Usage;
+            TellOfEnvironment(error.what(), words);
+            return code;
         }
         Output::Talk(unknown + " (--help)");
         return Usage;
@@ -131,4 +152,11 @@ int main(int argc, char **argv)
         Output::Talk(error.what());
         return ProblemFound;
     }
+}
+
+}  // namespace
+
+int main(int argc, char **argv)
+{
+    return Output::Ended(RunProgram(argc, argv));
 }

@@ -165,12 +165,12 @@ std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkF
     {
         return {};
     }
+    const std::string ours = config.Domain < asked ? "" : " and " + std::to_string(config.Domain);
     char text[200];
-    std::snprintf(
-        text, sizeof text,
-        "no node is in domains 0 to %d and %d; the other domains were only listened to, for %g s, and a "
-        "node may announce itself every 10 s, with a budget every 30 s",
-        asked - 1, config.Domain, seconds);
+    std::snprintf(text, sizeof text,
+                  "no node is in domains 0 to %d%s; the other domains were only listened to, for %g s, and a "
+                  "node may announce itself every 10 s, with a budget every 30 s",
+                  asked - 1, ours.c_str(), seconds);
     return {{Level::Note, "other domains", text, "--wait 35, to hear all that are there"}};
 }
 
@@ -202,7 +202,8 @@ std::vector<Finding> OfOtherInterfaces(const GatewayConfig &config, const std::v
     return findings;
 }
 
-std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode)
+std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts,
+                            const std::set<std::string> &heard)
 {
     std::set<std::string> with;
     std::set<std::string> without;
@@ -216,20 +217,25 @@ std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &fac
         }
     }
     const std::string there = " in domain " + std::to_string(config.Domain);
-    const bool one = with.size() == 1;
+    // Of plain DDS programs this program hears nothing.
+    const std::set<std::string> nodes = heard.empty() ? with : NodesWithKeys(config.Domain, facts);
+    std::set<std::string> out;
+    std::set_difference(nodes.begin(), nodes.end(), heard.begin(), heard.end(),
+                        std::inserter(out, out.end()));
     std::vector<Finding> findings;
     if (!with.empty() && !config.Security)
     {
         findings.push_back(
             {Level::Problem, "keys",
-             Listed(with) + there + (one ? " has keys" : " have keys") +
+             Listed(with) + there + (with.size() == 1 ? " has keys" : " have keys") +
                  ", and this program has none: it stays out",
              "--keys FOLDER; `rabit keys add laptop --tool` makes one where the fleet's keys are"});
     }
-    if (!with.empty() && config.Security && !anyNode)
+    if (!out.empty() && config.Security)
     {
+        const bool one = out.size() == 1;
         findings.push_back({Level::Problem, "keys",
-                            Listed(with) + there + (one ? " has keys, and does" : " have keys, and do") +
+                            Listed(out) + there + (one ? " has keys, and does" : " have keys, and do") +
                                 " not let this program in",
                             "keys of the same fleet, neither ended nor revoked, and the same level; " +
                                 std::string(one ? "its" : "their") + " log says why"});
@@ -242,6 +248,19 @@ std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &fac
                             "`rabit keys add`, if it belongs to this fleet"});
     }
     return findings;
+}
+
+std::set<std::string> NodesWithKeys(int domain, const NetworkFacts &facts)
+{
+    std::set<std::string> names;
+    if (const auto ours = facts.Domains.find(domain); ours != facts.Domains.end())
+    {
+        for (const auto &[address, of] : ours->second)
+        {
+            names.insert(of.NodesWithKeys.begin(), of.NodesWithKeys.end());
+        }
+    }
+    return names;
 }
 
 }  // namespace Rabit::Tool::Doctor

@@ -31,7 +31,11 @@ std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkF
 // others. `anyNode`: a node was heard on those that are used.
 std::vector<Finding> OfOtherInterfaces(const GatewayConfig &config, const std::vector<Interface> &used,
                                        const NetworkFacts &facts, bool anyNode);
-// Finds participants of our domain with keys if this program has none, and the reverse.
-std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode);
+// Finds participants of our domain with keys if this program has none, and the reverse. `heard`: the names of
+// nodes and tools that are heard.
+std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts,
+                            const std::set<std::string> &heard);
+// The names of nodes and tools with keys that announced themselves in the domain.
+std::set<std::string> NodesWithKeys(int domain, const NetworkFacts &facts);
 
 }  // namespace Rabit::Tool::Doctor

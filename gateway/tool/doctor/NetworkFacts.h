@@ -11,8 +11,9 @@ namespace Rabit::Tool::Doctor
 struct Voices
 {
     std::set<std::string> Names;
-    bool AreNodes = false;             // at least one of them is a node of Rabit
-    std::set<std::string> WithKeys{};  // those of them that take part in DDS Security
+    bool AreNodes = false;                  // at least one of them is a node of Rabit
+    std::set<std::string> WithKeys{};       // those of them that take part in DDS Security
+    std::set<std::string> NodesWithKeys{};  // those of these that are nodes of Rabit, or its tools
 };
 
 // The result of sending by multicast on one interface.

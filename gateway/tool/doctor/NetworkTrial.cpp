@@ -152,7 +152,7 @@ class NetworkTrial::Work
 {
 public:
     Work(const std::vector<Interface> &used, const std::vector<Interface> &unused, std::string ownName,
-         const std::vector<int> &callIn)
+         const std::vector<int> &callIn, const std::vector<int> &listenIn)
         : _interfaces(used),
           _unused(unused),
           _ownName(std::move(ownName)),
@@ -165,7 +165,7 @@ public:
         {
             _facts.Trials[one.Name];
         }
-        AddEars();
+        AddEars(listenIn);
         AddMouths();
         for (Mouth &mouth : _mouths)
         {
@@ -190,6 +190,10 @@ public:
     {
         const std::lock_guard lock(_mutex);
         NetworkFacts facts = _facts;
+        for (const auto &[participant, node] : _keyed)
+        {
+            facts.Domains[node.Domain][node.Address].NodesWithKeys.insert(node.Name);
+        }
         for (const auto &[participant, place] : _elsewhere)
         {
             if (!_onUsed.contains(participant))
@@ -226,6 +230,13 @@ private:
         int Port;
     };
 
+    struct KeyedNode
+    {
+        int Domain = 0;
+        std::string Name;
+        std::string Address;
+    };
+
     struct Place
     {
         int Domain = 0;
@@ -233,12 +244,12 @@ private:
         std::string Address;
     };
 
-    void AddEars()
+    void AddEars(const std::vector<int> &domains)
     {
         _ears.push_back({OpenSocket("0.0.0.0", 0)});
         Join(_ears.back().Where, _interfaces);
         _trialPort = PortOf(_ears.back().Where);
-        for (int domain = 0; domain <= LastDomain; ++domain)
+        for (const int domain : domains)
         {
             UdpSocket socket = OpenSocket("0.0.0.0", CallPort(domain));
             if (socket.IsOpen())
@@ -378,6 +389,10 @@ private:
             return;
         }
         const auto heard = HeardIn(datagram.Bytes);
+        if (heard && heard->Leaves)
+        {
+            _keyed.erase(heard->Sender);
+        }
         // Ignores the participants that this program makes itself, here and with DDS.
         if (!heard || !heard->Announces || heard->Name == _ownName ||
             std::equal(_id.begin(), _id.end() - 2, heard->Sender.begin()))
@@ -420,6 +435,10 @@ private:
             if (heard->HasKeys && from.Names.contains(heard->Name))
             {
                 from.WithKeys.insert(heard->Name);
+                if (heard->IsNode && _keyed.size() < MostParticipants)
+                {
+                    _keyed[heard->Sender] = {ear.Domain, heard->Name, datagram.From};
+                }
             }
         }
     }
@@ -455,14 +474,16 @@ private:
     std::map<ParticipantId, Unanswered> _unanswered;  // for the thread alone
     mutable std::mutex _mutex;
     NetworkFacts _facts;
+    std::map<ParticipantId, KeyedNode> _keyed;  // nodes and tools with keys that have not left
     std::set<ParticipantId> _onUsed;            // heard on an interface that is used
     std::map<ParticipantId, Place> _elsewhere;  // heard on another one
     std::thread _thread;
 };
 
 NetworkTrial::NetworkTrial(const std::vector<Interface> &used, const std::vector<Interface> &unused,
-                           std::string ownName, const std::vector<int> &callIn)
-    : _work(std::make_unique<Work>(used, unused, std::move(ownName), callIn))
+                           std::string ownName, const std::vector<int> &callIn,
+                           const std::vector<int> &listenIn)
+    : _work(std::make_unique<Work>(used, unused, std::move(ownName), callIn, listenIn))
 {
 }
 

@@ -11,7 +11,7 @@ namespace Rabit::Tool::Doctor
 {
 
 // Tries the network beside DDS, with sockets of its own. Sends by multicast on each interface, and listens
-// where the participants of all domains announce themselves. Also announces itself once in some domains, so
+// where the participants of domains announce themselves. Also announces itself once in some domains, so
 // that participants answer, and in the first of them each 0.8 s until it has done so seven times: a call or
 // an answer may be lost. That costs some 190 bytes on the air for each call and interface, and the answers.
 // Listens from the construction on, on a thread of its own. On interfaces that are not used it only listens.
@@ -24,9 +24,10 @@ class NetworkTrial
 {
 public:
     // `used`, `unused`: interfaces of this machine. `ownName`: the participant of this program, which is
-    // ignored. `callIn`: the domains in which to ask, the configured one first.
+    // ignored. `callIn`: the domains in which to ask, the configured one first; `listenIn`: those in which to
+    // listen.
     NetworkTrial(const std::vector<Interface> &used, const std::vector<Interface> &unused,
-                 std::string ownName, const std::vector<int> &callIn);
+                 std::string ownName, const std::vector<int> &callIn, const std::vector<int> &listenIn);
     ~NetworkTrial();
     NetworkTrial(const NetworkTrial &) = delete;
     NetworkTrial &operator=(const NetworkTrial &) = delete;

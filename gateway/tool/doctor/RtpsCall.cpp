@@ -63,13 +63,24 @@ void ReadData(const ConstSubmessage &data, HeardCall &heard)
     reader.Skip(2);
     const std::uint16_t toQos = reader.U16();
     static_cast<void>(reader.Entity());
-    if (reader.Entity() != ParticipantWriter || (data.Flags & DataFlag) == 0 || toQos < 16)
+    if (reader.Entity() != ParticipantWriter || toQos < 16)
     {
         return;
     }
     reader.Skip(toQos - 8u);
-    while ((data.Flags & InlineQosFlag) != 0 && TakeParameter(reader))
+    if ((data.Flags & InlineQosFlag) != 0)
     {
+        constexpr std::uint8_t disposedOrUnregistered = 3;
+        while (const auto parameter = TakeParameter(reader))
+        {
+            heard.Leaves =
+                heard.Leaves || (parameter->Id == Parameters::StatusInfo && parameter->Value.size() == 4 &&
+                                 (parameter->Value[3] & disposedOrUnregistered) != 0);
+        }
+    }
+    if (heard.Leaves || (data.Flags & DataFlag) == 0)
+    {
+        return;
     }
     const std::uint32_t encapsulation = RtpsReader(reader.Bytes(EncapsulationSize), false).U16();
     if (!reader.IsGood() || (encapsulation != 2 && encapsulation != 3))

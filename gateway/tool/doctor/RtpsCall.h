@@ -25,6 +25,7 @@ struct HeardCall
     bool HasKeys = false;  // it says that it takes part in DDS Security
     bool Announces = false;
     std::uint16_t Port = 0;  // at which it takes announcements for itself alone, over UDP and IPv4; 0: none
+    bool Leaves = false;     // the participant says that it is gone
 };
 // Empty if the datagram is not RTPS.
 std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram);

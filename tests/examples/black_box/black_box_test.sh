@@ -51,7 +51,7 @@ grep -q '^The replay is at http://127.0.0.1:[0-9]*/$' "$work/out" || fail "no re
 
 # Seven nodes were killed hard, and their files are whole again.
 [ "$(grep -c '_recovered.mcap: [0-9]* messages$' "$work/out")" -ge 7 ] || fail "seven recordings were to be recovered"
-grep -Eq '^flight.mcap: [0-9]+ messages by the clock of .*, wrong by [0-9.]+ ms at most$' "$work/out" || fail "nothing was merged"
+grep -Eq '^flight.mcap: [0-9]+ messages .and [0-9]+ about the time line. by the clock of .*, wrong by [0-9.]+ ms at most$' "$work/out" || fail "nothing was merged"
 grep -Eq '^ground +uav1/Pose +[0-9]+ ' "$work/out" || fail "it does not tell what ground knew of uav1"
 grep -Eq '^uav1 knew uav2/Pose .*age [0-9.]+ s' "$work/out" || fail "it does not tell how old what uav1 knew of uav2 was"
 grep -Eq '^uav1 knew uav3/Pose .*age [1-9][0-9.]* s' "$work/out" || fail "it does not tell how old what uav1 knew of uav3 was"

@@ -157,6 +157,10 @@ TEST_F(NetworkChecks, DomainsThatWereOnlyListenedToAreNamedIfNoNodeWasFound)
     EXPECT_THAT(findings[0].Text,
                 HasSubstr("no node is in domains 0 to 9 and 42; the other domains were only listened "
                           "to, for 12 s"));
+    config.Domain = 0;
+    EXPECT_THAT(OfSilentDomains(config, facts, false, 10, 12.0)[0].Text,
+                HasSubstr("no node is in domains 0 to 9; the other"));
+    config.Domain = 42;
     EXPECT_THAT(OfSilentDomains(config, facts, true, 10, 12.0), IsEmpty());
     facts.Domains[8]["10.0.0.4"] = {{"uav2"}, true};
     EXPECT_THAT(OfSilentDomains(config, facts, false, 10, 12.0), IsEmpty());
@@ -167,7 +171,7 @@ TEST_F(NetworkChecks, NodesWithKeysAreAProblemForWhoHasNone)
     config.Domain = 7;
     facts.Domains[7]["10.0.0.3"] = {{"plain", "uav1", "uav2"}, true, {"uav1", "uav2"}};
     facts.Domains[8]["10.0.0.3"] = {{"uav3"}, true, {"uav3"}};
-    const auto findings = OfKeys(config, facts, true);
+    const auto findings = OfKeys(config, facts, {});
     ASSERT_THAT(findings, SizeIs(1));
     EXPECT_EQ(findings[0].How, Level::Problem);
     EXPECT_EQ(findings[0].Text, "uav1, uav2 in domain 7 have keys, and this program has none: it stays out");
@@ -178,12 +182,12 @@ TEST_F(NetworkChecks, ThatNobodyLetsOneInWhoHasKeysIsAProblemAndOneWithoutKeysAN
 {
     config.Domain = 7;
     config.Security.emplace();
-    facts.Domains[7]["10.0.0.3"] = {{"plain", "uav1"}, true, {"uav1"}};
-    const auto lonely = OfKeys(config, facts, false);
+    facts.Domains[7]["10.0.0.3"] = {{"plain", "uav1"}, true, {"uav1"}, {"uav1"}};
+    const auto lonely = OfKeys(config, facts, {});
     ASSERT_THAT(lonely, SizeIs(2));
     EXPECT_EQ(lonely[0].How, Level::Problem);
     EXPECT_EQ(lonely[0].Text, "uav1 in domain 7 has keys, and does not let this program in");
-    const auto well = OfKeys(config, facts, true);
+    const auto well = OfKeys(config, facts, {"uav1"});
     ASSERT_THAT(well, SizeIs(1));
     EXPECT_EQ(well[0].How, Level::Note);
     EXPECT_EQ(well[0].Text, "plain in domain 7 has no keys: what it says is not heard");
@@ -192,8 +196,19 @@ TEST_F(NetworkChecks, ThatNobodyLetsOneInWhoHasKeysIsAProblemAndOneWithoutKeysAN
 TEST_F(NetworkChecks, KeysAreNoMatterWhereNobodyHasSome)
 {
     facts.Domains[config.Domain]["10.0.0.3"] = {{"uav1"}, true};
-    EXPECT_THAT(OfKeys(config, facts, true), IsEmpty());
-    EXPECT_THAT(OfKeys(config, facts, false), IsEmpty());
+    EXPECT_THAT(OfKeys(config, facts, {"uav1"}), IsEmpty());
+    EXPECT_THAT(OfKeys(config, facts, {}), IsEmpty());
+}
+
+TEST_F(NetworkChecks, ANodeThatDoesNotLetThisProgramInIsAProblemBesideOthersThatDo)
+{
+    config.Security.emplace();
+    facts.Domains[config.Domain]["10.0.0.3"] = {
+        {"plain", "uav1", "uav2"}, true, {"plain", "uav1", "uav2"}, {"uav1", "uav2"}};
+    const auto findings = OfKeys(config, facts, {"uav1"});
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].How, Level::Problem);
+    EXPECT_EQ(findings[0].Text, "uav2 in domain 0 has keys, and does not let this program in");
 }
 
 TEST_F(NetworkChecks, ProgramsThatAreNoNodesAreNeverAProblem)

@@ -51,6 +51,23 @@ TEST(RtpsCall, IsHeardAsAnAnnouncement)
     EXPECT_EQ(heard->Port, 7411);
 }
 
+TEST(RtpsCall, AParticipantThatSaysThatItIsGoneLeaves)
+{
+    // INFO_DST is not needed: a header and a DATA of the participant writer with PID_STATUS_INFO alone.
+    std::vector<std::uint8_t> goodbye = MakeCall(Id, {10, 0, 0, 2}, 7411);
+    goodbye.resize(20 + 4 + 20);
+    goodbye[21] = 0x03;  // little-endian, with inline QoS, without data
+    const std::vector<std::uint8_t> qos{0x71, 0, 4, 0, 0, 0, 0, 3, 1, 0, 0, 0};
+    goodbye.insert(goodbye.end(), qos.begin(), qos.end());
+    goodbye[22] = static_cast<std::uint8_t>(goodbye.size() - 24);
+    goodbye[23] = 0;
+    const auto heard = HeardIn(goodbye);
+    ASSERT_TRUE(heard);
+    EXPECT_EQ(heard->Sender, Id);
+    EXPECT_TRUE(heard->Leaves);
+    EXPECT_FALSE(heard->Announces);
+}
+
 TEST(RtpsCall, IsSmall)
 {
     EXPECT_LE(MakeCall(Id, {10, 0, 0, 2}, 7411).size() + 28, 220u);

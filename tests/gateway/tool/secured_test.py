@@ -55,6 +55,10 @@ def a_tool_with_keys_sees_and_sends(fleet):
         rows = {row["node"]: row["state"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
         return is_well(done) and rows == {"uav1": "UP", "uav2": "UP"}
     harness.until(both)
+    for number in range(1, 6):
+        done = fleet.run("nodes", "--keys", keys, "--json")
+        rows = {row["node"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
+        assert rows == {"uav1", "uav2"} or not is_well(done), (number, "a short list is not marked as such", done)
     for node in ("uav1", "uav2"):
         # On a busy machine a handshake may take longer than --wait, so the command is repeated, as a person would.
         def echoed(node=node):

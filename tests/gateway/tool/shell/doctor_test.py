@@ -3,9 +3,12 @@
 
 Usage: doctor_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 
+import pathlib
 import re
+import signal
 import subprocess
 import sys
+import time
 
 from two_aircraft import LIMIT, SWARM, Rabit, harness, is_well, keys, main
 
@@ -75,8 +78,19 @@ def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_ther
     assert done.returncode == 3 and "! interface nosuch0: this machine has none. Do: name one of " in done.stdout, done
 
 
-TESTS = [a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well, a_doctor_is_answered_by_a_node_that_is_alone_over_each_dds,
-         a_doctor_tells_of_the_domain_that_the_others_are_in,
+def a_doctor_that_is_interrupted_has_no_report(rabit):
+    with subprocess.Popen(rabit.argv("doctor", "--wait", "60"), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                          text=True) as doctor:
+        # Its socket for the announcements of domain 200 is open.
+        harness.until(lambda: f":{7400 + 250 * 200:04X} " in pathlib.Path("/proc/net/udp").read_text())
+        time.sleep(1)
+        doctor.send_signal(signal.SIGINT)
+        shown, told = doctor.communicate(timeout=LIMIT)
+    assert doctor.returncode == 130 and shown == "" and re.search("interrupted after .* of 60 s", told), (shown, told)
+
+
+TESTS = [a_doctor_that_is_interrupted_has_no_report, a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well,
+         a_doctor_is_answered_by_a_node_that_is_alone_over_each_dds, a_doctor_tells_of_the_domain_that_the_others_are_in,
          a_doctor_that_hears_nobody_listens_until_nodes_of_all_domains_must_have_announced_themselves,
          a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there]
 

@@ -6,7 +6,7 @@ Usage: listing_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 import re
 import subprocess
 
-from two_aircraft import LIMIT, Rabit, harness, is_well, keys, main
+from two_aircraft import LIMIT, SWARM, Rabit, harness, is_well, keys, main
 
 HASH = re.compile(r"^[0-9a-f]{16}$")
 
@@ -77,6 +77,7 @@ def the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name(rabit):
 
 def a_name_that_is_wrong_is_answered_with_the_nearest(rabit):
     for arguments, hint in ((("type", "Uav::Poze"), "did you mean `Uav::Pose`?"),
+                            (("type", "Goto"), "did you mean `Uav::Goto`?"),
                             (("echo", "uav1/Poze"), "did you mean `Pose`?"),
                             (("echo", "uaw1/Pose"), "did you mean `uav1`?")):
         done = rabit.run_until_heard(*arguments)
@@ -113,6 +114,39 @@ def whoever_asks_again_and_again_is_answered(rabit):
     for number in range(1, 13):
         done = rabit.run("nodes")
         assert is_well(done), (number, done)
+
+
+def the_problems_of_the_nodes_are_told_each_time(rabit):
+    def missing(done):
+        # The aircraft have no camera here.
+        return [node for node in ("uav1", "uav2") if not re.search(rf"^! node {node}: subscribe Targets", done.stdout, re.M)]
+    harness.until(lambda: not missing(rabit.run("nodes")))
+    for number in range(1, 7):
+        done = rabit.run("nodes")
+        assert done.returncode == 1 and not missing(done), (number, done)
+
+
+def output_that_cannot_be_written_is_told_by_every_command(rabit):
+    check = [rabit.program, "check", str(SWARM / "uav.yaml")]
+    for argv in (rabit.argv("nodes"), rabit.argv("messages"), rabit.argv("echo", "uav1/Pose", "--once", "--wait", "30"),
+                 rabit.argv("doctor", "--json", "--wait", "1"), check, [rabit.program, "--help"]):
+        with open("/dev/full", "w", encoding="ascii") as full:
+            done = subprocess.run(argv, stdout=full, stderr=subprocess.PIPE, text=True, timeout=LIMIT, check=False)
+        assert done.returncode != 0, (argv, done)
+        assert "rabit: cannot write: No space left on device\n" in done.stderr, (argv, done)
+
+
+def a_tool_does_not_appear_under_the_name_of_a_node(rabit):
+    for words in (["nodes"], ["echo", "uav2/Health", "--once"], ["send", "uav2/MissionControl", "Uav::GoHome", "{}"]):
+        done = rabit.run(*words, "--node", "uav1", "--wait", "60")
+        assert done.returncode == 1 and done.stdout == "", done
+        assert done.stderr == "rabit: there is a node `uav1`; two of one name would disturb each other\n", done
+
+
+def a_wildcard_is_refused_where_one_node_is_meant(rabit):
+    for words in (["ping", "uav*"], ["log", "uav?"], ["send", "uav*/MissionControl", "Uav::GoHome", "{}"]):
+        done = rabit.run(*words)
+        assert done.returncode == 2 and "wildcards are not taken here" in done.stderr, done
 
 
 def an_interface_that_is_not_there_is_the_reason(rabit):
@@ -158,7 +192,9 @@ TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          how_often_all_messages_come_is_measured_together, the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name,
          a_name_that_is_wrong_is_answered_with_the_nearest,
          what_a_node_does_not_have_is_told_as_soon_as_its_announcement_is_there,
-         another_aircraft_is_not_proposed_for_one_that_is_not_there, a_mistyped_command_or_option_is_answered_with_the_nearest, whoever_asks_again_and_again_is_answered,
+         another_aircraft_is_not_proposed_for_one_that_is_not_there, a_mistyped_command_or_option_is_answered_with_the_nearest, whoever_asks_again_and_again_is_answered, the_problems_of_the_nodes_are_told_each_time,
+         output_that_cannot_be_written_is_told_by_every_command, a_tool_does_not_appear_under_the_name_of_a_node,
+         a_wildcard_is_refused_where_one_node_is_meant,
          an_interface_that_is_not_there_is_the_reason, a_configuration_of_a_node_serves_for_its_network_alone,
          wrong_usage_is_2, nobody_in_the_domain_is_3,
          viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means]

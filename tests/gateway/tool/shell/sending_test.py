@@ -53,6 +53,11 @@ def the_result_of_a_post_is_an_object_for_scripts(rabit):
     assert row == {"node": "uav8", "message": "Nobody", "posts": 1, "readers": 0}, row
 
 
+def a_post_of_another_type_than_the_readers_want_is_told(rabit):
+    done = rabit.run("post", "uav7/Pose", "Uav::Goto", "{}", "--wait", "4", "--for", "0.5")
+    assert done.returncode == 1 and "subscribers of `Pose` want `Uav::Pose`, not `Uav::Goto`" in done.stderr, done
+
+
 def what_cannot_be_posted_is_told(rabit):
     done = rabit.run("post", "uav1/Pose", "Uav::Pose", "{}", "--wait", "60")
     assert done.returncode == 1 and "there is a node `uav1`" in done.stderr and done.stdout == "", done
@@ -66,7 +71,7 @@ def what_cannot_be_posted_is_told(rabit):
 TESTS = [a_message_is_sent_and_its_outcome_is_the_exit_code, lines_of_standard_input_are_sent_each,
          what_cannot_be_sent_is_told_with_the_nearest_right_word, a_message_is_posted_as_a_node_of_the_given_name,
          the_result_of_a_post_is_an_object_for_scripts,
-         what_cannot_be_posted_is_told]
+         what_cannot_be_posted_is_told, a_post_of_another_type_than_the_readers_want_is_told]
 
 
 if __name__ == "__main__":

@@ -255,6 +255,50 @@ def what_is_no_recording_is_not_recovered(rabit):
         assert [file.name for file in pathlib.Path(folder).iterdir()] == ["text.mcap"]
 
 
+def what_is_no_recording_is_told_by_info_and_knew(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        for text in ("", "A text, and no recording.\n"):
+            file = pathlib.Path(folder) / "text.mcap"
+            file.write_text(text)
+            for command in ("info", "knew"):
+                done = run(rabit, command, str(file))
+                assert done.returncode == 1 and done.stdout == "" and "is no recording" in done.stderr, done
+
+
+def a_message_that_nobody_publishes_is_told_while_recording(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        done = rabit.run("record", "uav1/Poze", "--to", folder, "--for", "4", "--wait", "4")
+        assert done.returncode == 1 and done.stdout == "", done
+        assert "`uav1` does not publish `Poze`; did you mean `Pose`?" in done.stderr, done
+        assert list(pathlib.Path(folder).iterdir()) == [], done
+
+
+def what_a_recording_does_not_hold_is_told_with_what_it_holds(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        done = rabit.run("record", "uav1/Pose", "--to", folder, "--for", "1", "--wait", "60", "--node", "laptop")
+        assert done.returncode == 0, done
+        file = str(next(pathlib.Path(folder).iterdir()))
+        done = run(rabit, "knew", file, "uav1", "uav2/Pose")
+        assert done.returncode == 1 and f"{file} holds nothing of what uav1 knew" in done.stderr, done
+        assert "`laptop`" in done.stderr, done
+        done = run(rabit, "knew", file, "laptop", "uav2/Pose")
+        assert done.returncode == 1 and "laptop knew no uav2/Pose in " in done.stderr and "`uav1/Pose`" in done.stderr, done
+
+
+def a_name_of_a_rate_that_no_node_has_is_wrong_usage(rabit):
+    done = check(rabit, *FLEET, "--rate", "Poze=3")
+    assert done.returncode == 2 and "no node has a `Poze`; did you mean `Pose`?" in done.stderr, done
+
+
+def a_variable_of_the_environment_that_is_wrong_is_named(rabit):
+    assert "RABIT_DOMAIN=many" in run(rabit, "nodes", RABIT_DOMAIN="many").stderr
+
+
+def a_rate_must_be_above_0(rabit):
+    done = rabit.run("echo", "uav1/Pose", "--rate", "0")
+    assert done.returncode == 2 and "must be a number above 0" in done.stderr and len(done.stderr) < 200, done
+
+
 def a_recovery_that_does_not_fit_on_the_disk_leaves_no_file(rabit):
     with tempfile.TemporaryDirectory() as folder:
         done = rabit.run("record", "uav1/Pose", "--to", folder, "--for", "1", "--wait", "60")
@@ -275,7 +319,10 @@ def a_recovery_that_does_not_fit_on_the_disk_leaves_no_file(rabit):
         assert keys(row) == ["file", "messages", "lost", "problems"] and row["messages"] > 0, row
 
 
-TESTS = [configurations_of_a_fleet_are_checked_against_each_other,
+TESTS = [what_is_no_recording_is_told_by_info_and_knew, a_message_that_nobody_publishes_is_told_while_recording,
+         what_a_recording_does_not_hold_is_told_with_what_it_holds, a_name_of_a_rate_that_no_node_has_is_wrong_usage,
+         a_variable_of_the_environment_that_is_wrong_is_named, a_rate_must_be_above_0,
+         configurations_of_a_fleet_are_checked_against_each_other,
          what_a_fleet_puts_on_the_air_is_checked_against_its_budgets, shells_complete_commands_and_options,
          shells_complete_what_the_fleet_has, the_manual_tells_of_every_command_and_every_common_option,
          an_option_takes_one_value_wherever_it_stands, what_is_left_out_of_a_recording_takes_no_message_with_it,
