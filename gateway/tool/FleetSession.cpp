@@ -142,7 +142,9 @@ void FleetSession::WaitForEverybody(const std::function<bool()> &isWhole)
     WaitUntil(Patience(), [&] { return Underway().empty(); });
     if (IsAnybodyThere())
     {
-        WaitUntil(std::max(Seconds(), _options.Wait) + Answers, ends);
+        // The busy computer of a handshake is also slow to answer.
+        const double longer = _announcements ? 3.0 * Answers : Answers;
+        WaitUntil(std::max(Seconds(), _options.Wait) + longer, ends);
     }
 }
 

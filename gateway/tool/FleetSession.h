@@ -61,8 +61,8 @@ public:
     // have been heard. Returns its last result.
     bool WaitUntilDecided(const std::function<bool()> &isDecided);
     // Waits until all nodes that are there are heard, and `isWhole` returns true; for 1.5 s at least. Without
-    // --wait it waits 3 s longer than usual for what is still lacking, as a node may be answering others, and
-    // 15 s longer for nodes that are being authenticated.
+    // --wait it waits 3 s longer than usual for what is still lacking, as a node may be answering others;
+    // with keys 9 s, after up to 15 s for nodes that are being authenticated.
     void WaitForEverybody(const std::function<bool()> &isWhole);
     // The longest time to wait for a node, in seconds from the start of the session: --wait, and without it
     // longer than usual if this program has keys.
