@@ -122,6 +122,7 @@ TEST_F(ExplorerTest, CountsReadersThatAreNoNodesAndNoToolsAmongThem)
     Foreign::Network network;
     RemoteEndpoint reader;
     reader.Topic = "Pose";
+    reader.Type = "Uav::Pose";
     network.Endpoints = {reader, reader};  // of no node
     reader.Node = "rabit.host.7";          // nobody knows that node
     network.Endpoints.push_back(reader);
@@ -133,6 +134,7 @@ TEST_F(ExplorerTest, CountsReadersThatAreNoNodesAndNoToolsAmongThem)
     const auto found = exploration.FoundSubscribers();
     EXPECT_EQ(found->at("Pose").Others, 2u);
     EXPECT_THAT(found->at("Pose").Nodes, ::testing::IsEmpty());
+    EXPECT_THAT(found->at("Pose").Types, ::testing::ElementsAre("Uav::Pose"));
 }
 
 TEST_F(ExplorerTest, TellsHowFarTheWallClocksOfOthersAreAhead)

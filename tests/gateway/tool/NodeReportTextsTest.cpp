@@ -34,14 +34,22 @@ TEST(NodeProblems, EachIsALineAndTheRestIsCounted)
     fleet.nodes[1].node = "uav2";
     fleet.nodes[1].problems = 3;
     fleet.nodes[1].problem_texts = {"accept Q: there is none", "publish Pose: it is of another type"};
-    EXPECT_TRUE(AreProblemsKnown(fleet));
     fleet.nodes[2].node = "uav3";
     fleet.nodes[2].problems = 2;
-    EXPECT_FALSE(AreProblemsKnown(fleet));
     EXPECT_THAT(LinesOf(fleet), ElementsAre("node uav2: accept Q: there is none",
                                             "node uav2: publish Pose: it is of another type",
                                             "node uav2: it has 1 more problem; see `rabit log uav2`",
                                             "node uav3: it has 2 problems; see `rabit log uav3`"));
+}
+
+TEST(NodeProblems, AreKnownOnceEachLiveNodeHasToldThem)
+{
+    std::vector<FleetExplorer::Node> nodes(2);
+    nodes[0].State = nodes[1].State = Gateway::NodeState::UP;
+    nodes[0].AreProblemsKnown = true;
+    EXPECT_FALSE(AreProblemsKnown(nodes));
+    nodes[1].State = Gateway::NodeState::LOST;
+    EXPECT_TRUE(AreProblemsKnown(nodes));
 }
 
 TEST(LogText, IsTheNumberOfItsFirstLineAndPrintableLines)
