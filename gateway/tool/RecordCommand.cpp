@@ -148,6 +148,15 @@ bool Tell(const Options &options, const RecordingStatus &status)
     return status.Lost.empty() && status.Problem.empty();
 }
 
+// If no message was followed, the file holds nothing but what this program knew of the fleet.
+void RemoveFile(const Options &options, const RecordingStatus &status)
+{
+    if (status.Files == 1)
+    {
+        FolderDisk(options.Folder).Remove(status.LastFile);
+    }
+}
+
 // Replaces a size such as 500MB by its bytes.
 CLI::Validator Size(const ByteRange &range)
 {
@@ -218,6 +227,7 @@ int Run(const Options &options, Wakeup &wakeup)
             if (!anybody && session.Seconds() >= options.Common.Wait)
             {
                 target->End();
+                RemoveFile(options, target->Status());
                 return session.NobodyThere();
             }
             progress.Look(target->Status(), session.Seconds());
@@ -228,11 +238,7 @@ int Run(const Options &options, Wakeup &wakeup)
     target->End();
     if (!begin)
     {
-        // A file holds nothing but what this program knew of the fleet.
-        if (target->Status().Files == 1)
-        {
-            FolderDisk(options.Folder).Remove(target->Status().LastFile);
-        }
+        RemoveFile(options, target->Status());
         Output::Talk("nobody publishes such a message; nothing was recorded");
         return ProblemFound;
     }
