@@ -265,11 +265,10 @@ bool PublishSubscribeMessage::FetchIfChanged(RabitMessage *msg)
         throw std::invalid_argument("cannot fetch to a null message");
     }
     std::unique_lock<std::mutex> lock(*_mutex);
-    const bool stampsEqual = msg->CompareTime(_message.get());
     const bool samePost = msg->_seenSource == _identity && msg->_seenSequence == Sequence();
     // If nothing was posted yet, a copy that was never registered differs only by its time stamp.
     const bool neverPosted = Sequence() == 0 && msg->_seenSource == 0;
-    if (stampsEqual && (samePost || neverPosted))
+    if ((samePost || neverPosted) && msg->CompareTime(_message.get()))
     {
         MarkAsCurrent(*msg);
         return false;
