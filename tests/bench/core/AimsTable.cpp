@@ -99,6 +99,8 @@ bool AimsTable::Print() const
                     Counter("FetchAgainstPoster", "wrong"), 0.0, ""});
     rows.push_back(
         {"queue, add and get, one thread", "6 x lock", Time("Queue/AddGetOneThread"), 6 * lock, "ns"});
+    rows.push_back({"queue, make, add and get a message, one thread", "one clock read + 7 x lock",
+                    Time("Queue/AddFreshMessage"), clock + 7 * lock, "ns"});
     rows.push_back(
         {"queue, each message through two threads", "100 ns", Time("Queue/ThroughTwoThreads"), 100.0, "ns"});
     for (const char *percentile : {"p50", "p99"})

@@ -31,6 +31,20 @@ void AddAndGet(benchmark::State &state)
 BENCHMARK(AddAndGet<RabitMessageQueue<Message>>)->Name("Queue/AddGetOneThread");
 BENCHMARK(AddAndGet<RabitNonBlockingSPSCQueue<Message>>)->Name("SpscQueue/AddGetOneThread");
 
+// A message is made, added, taken and destroyed.
+void AddFreshMessage(benchmark::State &state)
+{
+    RabitMessageQueue<Message> queue(1000, "Queue");
+    Message taken;
+    for (auto _ : state)
+    {
+        queue.AddMessage(std::make_shared<PoseMessage>());
+        queue.GetMessage(taken);
+        benchmark::DoNotOptimize(taken);
+    }
+}
+BENCHMARK(AddFreshMessage)->Name("Queue/AddFreshMessage");
+
 // One thread adds and another gets. The time is for each message that went through. The pointers have no
 // shared reference count, so that only the queue is measured.
 template <typename Queue>

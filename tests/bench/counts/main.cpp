@@ -1,10 +1,7 @@
 // Sends messages from one node to another within this process, on one thread, over a wire without cost, under
-// a clock that the program advances: instructions and allocations are the same in every run. Prints the
-// allocations of one message. Under `valgrind --tool=callgrind --toggle-collect=Measured` its instructions
-// are counted.
-//
-// Usage: bench_counts SCENARIO MESSAGES
-#include "../common/Usage.h"
+// a clock that the program advances: instructions and allocations are the same in every run. Its arguments
+// and its output: Counting.h.
+#include "Counting.h"
 #include "WiredTransport.h"
 
 #include <rabit/ManualClock.h>
@@ -16,9 +13,6 @@
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <chrono>
-#include <cstdlib>
-#include <functional>
-#include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -35,7 +29,6 @@ using ::Bench::Sample;
 using namespace std::chrono_literals;
 
 constexpr std::size_t Padding = 80;  // a message of 100 bytes
-constexpr int WarmUp = 2000;
 constexpr auto Step = 50us;
 
 // Takes all that comes, as any manager does.
@@ -189,13 +182,6 @@ private:
     std::vector<std::uint8_t> _buffer;
 };
 
-struct Scenario
-{
-    std::function<void()> Message;
-    std::function<std::uint64_t()> Count;
-    int AtOnce = 1;
-};
-
 Scenario Find(const std::string &name)
 {
     if (name == "codec")
@@ -223,36 +209,7 @@ Scenario Find(const std::string &name)
 }  // namespace
 }  // namespace Rabit::Bench
 
-// A function with a plain name, for callgrind.
-extern "C" [[gnu::noinline]] void Measured(const Rabit::Bench::Scenario &scenario, int messages)
-{
-    for (int i = 0; i < messages; i += scenario.AtOnce)
-    {
-        scenario.Message();
-    }
-}
-
 int main(int argc, char **argv)
 {
-    if (argc != 3)
-    {
-        std::cerr << "usage: bench_counts SCENARIO MESSAGES\n";
-        return 2;
-    }
-    const int messages = std::atoi(argv[2]);
-    const Rabit::Bench::Scenario scenario = Rabit::Bench::Find(argv[1]);
-    for (int i = 0; i < Rabit::Bench::WarmUp; i += scenario.AtOnce)
-    {
-        scenario.Message();
-    }
-    const std::uint64_t countBefore = scenario.Count();
-    const std::uint64_t before = Rabit::Bench::AllocationsSoFar();
-    Measured(scenario, messages);
-    const std::uint64_t allocations = Rabit::Bench::AllocationsSoFar() - before;
-    const std::uint64_t count = scenario.Count() - countBefore;
-    std::cout << "{\"messages\": " << count
-              << ", \"allocations\": " << static_cast<double>(allocations) / static_cast<double>(messages)
-              << "}" << std::endl;
-    // The messages accepted last may still be on their way.
-    return count + 128 >= static_cast<std::uint64_t>(messages) ? 0 : 1;
+    return Rabit::Bench::Count(argc, argv, Rabit::Bench::Find);
 }
