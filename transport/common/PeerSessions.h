@@ -83,14 +83,20 @@ public:
     std::vector<Id> Of(const std::string &node) const
     {
         std::vector<Id> ids;
+        VisitOf(node, [&](const Id &id) { ids.push_back(id); });
+        return ids;
+    }
+    // The same, one after the other: visit(id).
+    template <typename Visit>
+    void VisitOf(const std::string &node, const Visit &visit) const
+    {
         for (const auto &[id, session] : _sessions)
         {
             if (session->Node == node && !session->IsSuperseded())
             {
-                ids.push_back(id);
+                visit(id);
             }
         }
-        return ids;
     }
 
 private:

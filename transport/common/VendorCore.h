@@ -38,6 +38,13 @@ public:
     std::shared_ptr<const PeerSession> IdentityOf(const WriterId &endpoint) const;
     // The participants to which samples written to the node go (PeerSessions).
     std::vector<Rtps::GuidPrefix> ParticipantsOf(const std::string &node) const;
+    // The same, one after the other, under a lock: visit(prefix).
+    template <typename Visit>
+    void VisitParticipantsOf(const std::string &node, const Visit &visit) const
+    {
+        const std::lock_guard lock(_mutex);
+        _peers.VisitOf(node, visit);
+    }
     // The addresses of the Rabit nodes that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _context.Log; }

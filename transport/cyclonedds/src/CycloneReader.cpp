@@ -12,7 +12,9 @@ namespace Rabit::Cyclone
 CycloneReader::CycloneReader(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
                              const TopicQos &qos, const std::vector<std::string> &partitions,
                              SampleHandler handler)
-    : VendorReader(std::move(core), topic, std::move(handler)), _entityTopic(MakeTopic(*_core, topic, _type))
+    : VendorReader(std::move(core), topic, std::move(handler)),
+      _entityTopic(MakeTopic(*_core, topic, _type)),
+      _instance(_type, topic)
 {
     _cache.Base.common.ops = &CacheOps();
     _cache.Owner = this;

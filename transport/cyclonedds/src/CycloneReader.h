@@ -53,6 +53,7 @@ private:
     Cache _cache{};
     const ddsi_sertype *_type = nullptr;
     const Entity _entityTopic;
+    const KeptInstance _instance;
     Entity _reader;  // last member, see above
 };
 

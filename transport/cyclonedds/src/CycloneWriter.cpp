@@ -39,7 +39,9 @@ OpaqueSample *MakeKey(const ddsi_sertype *type, const KeyHash &key)
 
 CycloneWriter::CycloneWriter(std::shared_ptr<SessionCore> core, const TopicDescription &topic,
                              const TopicQos &qos, const std::vector<std::string> &partitions)
-    : VendorWriter(std::move(core), topic, qos), _entityTopic(MakeTopic(*_core, topic, _type))
+    : VendorWriter(std::move(core), topic, qos),
+      _entityTopic(MakeTopic(*_core, topic, _type)),
+      _instance(_type, topic)
 {
     const Listener listener = MakeListener(this);
     dds_lset_offered_incompatible_qos(
@@ -67,18 +69,19 @@ WriteResult CycloneWriter::SendTo(const std::string &node, const SampleEncoder &
     {
     public:
         Direction(const ddsi_sertype *type, const ddsi_guid_t &writer,
-                  const std::vector<Rtps::GuidPrefix> &participants)
+                  const std::vector<ddsi_guid_t> &participants)
         {
-            std::vector<ddsi_guid_t> guids;
-            std::transform(participants.begin(), participants.end(), std::back_inserter(guids),
-                           &ParticipantOf);
-            RabitCycloneWriteTo(type, &writer, guids.data(), guids.size());
+            RabitCycloneWriteTo(type, &writer, participants.data(), participants.size());
         }
         ~Direction() { RabitCycloneWriteToAll(); }
         Direction(const Direction &) = delete;
         Direction &operator=(const Direction &) = delete;
     };
-    const Direction direction(_type, VendorGuid(), _core->ParticipantsOf(node));
+    static thread_local std::vector<ddsi_guid_t> participants;
+    participants.clear();
+    _core->VisitParticipantsOf(
+        node, [](const Rtps::GuidPrefix &prefix) { participants.push_back(ParticipantOf(prefix)); });
+    const Direction direction(_type, VendorGuid(), participants);
     return Send(sample, sourceTime, false);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "Entity.h"
+#include "OpaqueType.h"
 #include "SessionCore.h"
 #include "common/VendorWriter.h"
 
@@ -33,6 +34,7 @@ private:
 
     const ddsi_sertype *_type = nullptr;
     const Entity _entityTopic;
+    const KeptInstance _instance;
     Entity _writer;  // last member, so that no listener runs when the others are destroyed
 };
 

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <new>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "EndpointSettings.h"
@@ -177,7 +179,7 @@ bool UntypedToValue(const ddsi_sertype *, const ddsi_serdata *, void *, void **,
 
 void FreeSample(ddsi_serdata *sample)
 {
-    delete Of(sample);
+    ::operator delete(Of(sample));
 }
 
 std::size_t Print(const ddsi_sertype *, const ddsi_serdata *, char *buffer, std::size_t size)
@@ -258,11 +260,13 @@ const ddsi_sertype_ops &TypeOps()
 
 OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::size_t size)
 {
-    auto *sample = new OpaqueSample;
-    ddsi_serdata_init(&sample->Header, type, kind);
+    static_assert(sizeof(OpaqueSample) % 8 == 0 && std::is_trivially_destructible_v<OpaqueSample>);
     // The vendor reads up to the next multiple of 4 bytes.
-    sample->Storage = std::make_unique<std::uint64_t[]>(size / 8 + 1);
+    const std::size_t padding = (4 - size % 4) % 4;
+    auto *sample = new (::operator new(sizeof(OpaqueSample) + size + padding)) OpaqueSample;
+    ddsi_serdata_init(&sample->Header, type, kind);
     sample->Size = size;
+    std::fill_n(sample->Data() + size, padding, std::uint8_t{0});
     return sample;
 }
 
@@ -273,6 +277,21 @@ void OpaqueSample::SetKey(const KeyHash &key)
     // differ in any bit must differ there.
     const std::string_view bytes(reinterpret_cast<const char *>(key.data()), key.size());
     Header.hash ^= static_cast<std::uint32_t>(std::hash<std::string_view>()(bytes));
+}
+
+KeptInstance::KeptInstance(const ddsi_sertype *type, const TopicDescription &topic) : _type(type)
+{
+    if (!topic.KeyOf)
+    {
+        OpaqueSample *key = NewSample(type, SDK_KEY, 0);
+        _instance = RabitCycloneKeepInstance(&key->Header);
+        ddsi_serdata_unref(&key->Header);
+    }
+}
+
+KeptInstance::~KeptInstance()
+{
+    RabitCycloneLetInstanceGo(_type, _instance);
 }
 
 ddsi_sertype *NewType(const TopicDescription &topic, std::shared_ptr<SessionLog> log)

@@ -6,9 +6,11 @@
 #include <dds/ddsi/ddsi_sertype.h>
 #include <rabit/transport/Transport.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 
+#include "KeptInstance.h"
 #include "common/SessionLog.h"
 
 namespace Rabit::Cyclone
@@ -19,15 +21,18 @@ constexpr std::uint32_t StatusDisposed = 1;
 constexpr std::uint32_t StatusUnregistered = 2;
 
 // A sample, shared with the vendor by a reference count. Header is its first member, as the vendor requires.
+// Its bytes follow it in the same memory, aligned to 8.
 struct OpaqueSample
 {
     ddsi_serdata Header;
-    std::unique_ptr<std::uint64_t[]> Storage;  // aligned to 8
     std::size_t Size = 0;
     KeyHash Key{};
     std::uint64_t Sequence = 0;  // of an arrived sample
 
-    std::uint8_t *Data() const { return reinterpret_cast<std::uint8_t *>(Storage.get()); }
+    std::uint8_t *Data() const
+    {
+        return reinterpret_cast<std::uint8_t *>(const_cast<OpaqueSample *>(this) + 1);
+    }
     // At most once for each sample, and only on a topic with a key.
     void SetKey(const KeyHash &key);
 };
@@ -38,5 +43,21 @@ OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::s
 // Makes the type of one topic. Arrivals that are no sample of it are counted in the log. The caller owns one
 // reference, which dds_create_topic_sertype takes.
 ddsi_sertype *NewType(const TopicDescription &topic, std::shared_ptr<SessionLog> log);
+
+// Keeps the vendor's instance of a topic without a key (RabitCycloneKeepInstance), for as long as a writer or
+// reader of it lives. Does nothing for a topic with a key.
+class KeptInstance
+{
+public:
+    // The type must be registered with a domain, and outlive this object.
+    KeptInstance(const ddsi_sertype *type, const TopicDescription &topic);
+    ~KeptInstance();
+    KeptInstance(const KeptInstance &) = delete;
+    KeptInstance &operator=(const KeptInstance &) = delete;
+
+private:
+    const ddsi_sertype *const _type;
+    ddsi_tkmap_instance *_instance = nullptr;
+};
 
 }  // namespace Rabit::Cyclone
