@@ -79,7 +79,7 @@ public:
 GatewayConfig Sender(QosProfile qos)
 {
     GatewayConfig config;
-    config.Node = "a";
+    config.Node = std::string("a");
     config.MaxDatagram = 65000;
     config.Publish.push_back({.Message = "Note", .Type = "Bench::Sample", .Qos = qos});
     return config;
@@ -88,7 +88,7 @@ GatewayConfig Sender(QosProfile qos)
 GatewayConfig Receiver()
 {
     GatewayConfig config;
-    config.Node = "b";
+    config.Node = std::string("b");
     config.MaxDatagram = 65000;
     config.Subscribe.push_back({.Message = "Note", .Type = "Bench::Sample", .From = {"a"}});
     config.Accept.push_back({.Queue = "Taker", .Types = {"Bench::Sample"}});
