@@ -1,7 +1,6 @@
 #pragma once
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
+#include <rabit/idl/FastCdr.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -32,16 +31,13 @@ public:
           _budget(MaxGrowth * bytes.size() + Allowance),
           // Fast-CDR takes no constant buffer, but does not write to it when reading.
           _buffer(const_cast<char *>(reinterpret_cast<const char *>(bytes.data())), bytes.size()),
-          _cdr(_buffer,
-               littleEndian ? eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS
-                            : eprosima::fastcdr::Cdr::BIG_ENDIANNESS,
-               eprosima::fastcdr::Cdr::DDS_CDR)
+          _cdr(_buffer, littleEndian ? FastCdr::LITTLE_ENDIANNESS : FastCdr::BIG_ENDIANNESS)
     {
     }
     CdrReader(const CdrReader &) = delete;
     CdrReader &operator=(const CdrReader &) = delete;
 
-    std::size_t Used() const { return _cdr.getSerializedDataLength(); }
+    std::size_t Used() const { return _cdr.Used(); }
     std::size_t Left() const { return _bytes.size() - Used(); }
 
     // Subtracts count objects of `size` bytes in memory from the budget; false if the budget is too small.
@@ -90,7 +86,7 @@ public:
         {
             return false;
         }
-        _cdr.deserializeArray(values, count);
+        _cdr.GetArray(values, count);
         return true;
     }
     // Reads the length of a sequence; false if it is above bound (0: no bound) or if the bytes left are too
@@ -153,7 +149,7 @@ private:
     std::span<const std::uint8_t> _bytes;
     std::uint64_t _budget;
     eprosima::fastcdr::FastBuffer _buffer;
-    eprosima::fastcdr::Cdr _cdr;
+    FastCdr _cdr;
 };
 
 }  // namespace Rabit::Idl

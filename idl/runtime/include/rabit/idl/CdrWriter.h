@@ -1,7 +1,6 @@
 #pragma once
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
+#include <rabit/idl/FastCdr.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -24,14 +23,14 @@ public:
     explicit CdrWriter(std::span<std::uint8_t> buffer)
         : _size(buffer.size()),
           _buffer(reinterpret_cast<char *>(buffer.data()), buffer.size()),
-          _cdr(_buffer, eprosima::fastcdr::Cdr::LITTLE_ENDIANNESS, eprosima::fastcdr::Cdr::DDS_CDR)
+          _cdr(_buffer, FastCdr::LITTLE_ENDIANNESS)
     {
     }
     CdrWriter(const CdrWriter &) = delete;
     CdrWriter &operator=(const CdrWriter &) = delete;
 
     // Bytes written so far.
-    std::size_t Used() const { return _cdr.getSerializedDataLength(); }
+    std::size_t Used() const { return _cdr.Used(); }
 
     // Writes one primitive value, aligned to its size.
     template <class T>
@@ -56,7 +55,7 @@ public:
         {
             return false;
         }
-        _cdr.serializeArray(values, count);
+        _cdr.PutArray(values, count);
         return true;
     }
     // Writes the length of a sequence or string.
@@ -95,14 +94,14 @@ private:
         }
         if (gap != 0)
         {
-            _cdr.serializeArray(zeros, gap);
+            _cdr.PutArray(zeros, gap);
         }
         return true;
     }
 
     std::size_t _size;
     eprosima::fastcdr::FastBuffer _buffer;
-    eprosima::fastcdr::Cdr _cdr;
+    FastCdr _cdr;
 };
 
 }  // namespace Rabit::Idl
