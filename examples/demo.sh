@@ -14,7 +14,7 @@ missing Debian packages and builds what is missing first.
   --track FILE       let an aircraft fly the track in this CSV file; the first --track is for uav1, the second for
                      uav2, and so on; they follow it and do not search
   --web PORT         port of the web page on this machine, 1 to 65535 (default: the first free one from 8080 on), or `off`
-  --transport NAME   DDS implementation: fastdds (default), cyclonedds, or mixed: uav1, uav3, ... and the ground station
+  --transport NAME   DDS implementation: fastdds (default if it is built), cyclonedds, or mixed: uav1, uav3, ... and the ground station
                      on fastdds, uav2, uav4, ... on cyclonedds
   --secure           with fresh keys, a folder for each node: strangers are neither heard nor answered
   --domain N         DDS domain, 0 to 232, with --secure to 230, that nobody on this machine uses (default: one
@@ -50,7 +50,7 @@ fi
 uavs=3
 seconds=
 tracks=()
-transport=fastdds
+transport=
 domain=
 bin=
 web=
@@ -132,6 +132,10 @@ if [ -z "$bin" ]; then
     "$root/docker/install-packages.sh" || exit 1
     "$root/docker/build-preset.sh" release "${programs[@]}" || exit 1
     bin=$root/build/release/bin
+fi
+if [ -z "$transport" ]; then
+    transport=fastdds
+    ! grep -qs '^RABIT_WITH_FASTDDS:BOOL=OFF' "$bin/../CMakeCache.txt" || transport=cyclonedds
 fi
 for program in "${programs[@]}"; do
     [ -x "$bin/$program" ] || fail_usage "there is no program $bin/$program"
