@@ -3,7 +3,7 @@
 #   tests/run.sh [ARGUMENT...]   arguments go to ctest, for instance: tests/run.sh -L core
 #   tests/run.sh --quick         only the unit tests of core, idl, transport and gateway, and one exchange of two nodes
 # Without arguments all tests run, except those with the label mutation, which test the tests, and those with the labels
-# field_long, fuzz_long, package_long and soak: each set takes five minutes or more, soak an hour.
+# bare_long, field_long, fuzz_long, package_long and soak: each set takes five minutes or more, soak an hour.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
@@ -46,7 +46,7 @@ if [ "${1:-}" = --quick ]; then
 fi
 if [ $# -eq 0 ]; then
     echo "All tests: about 20 minutes on two cores, and 30 more if nothing is built yet. --quick: a part of them."
-    set -- -LE 'mutation|field_long|fuzz_long|package_long|soak'
+    set -- -LE 'mutation|bare_long|field_long|fuzz_long|package_long|soak'
 fi
 "$root/docker/install-packages.sh"
 "$root/docker/install-packages.sh" "$root/docker/packages-check.txt"
