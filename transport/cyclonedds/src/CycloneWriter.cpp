@@ -1,7 +1,5 @@
 #include "CycloneWriter.h"
 
-#include <algorithm>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
