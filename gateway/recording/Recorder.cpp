@@ -20,11 +20,11 @@ constexpr std::chrono::milliseconds Turn(100);
 Recorder::Recorder(std::unique_ptr<RecordingDisk> disk, const RecordingSettings &settings, Clock clock)
     : _clock(std::move(clock)),
       _disk(std::move(disk)),
-      _inbox(settings.MemoryBytes),
+      _inbox(settings.Record.Memory),
       _files(*_disk, settings),
-      _blackBox(settings.BlackBox
-                    ? std::make_optional<BlackBox>(settings.BlackBox->Before, settings.BlackBox->After,
-                                                   settings.MemoryBytes)
+      _blackBox(settings.Record.BlackBox
+                    ? std::make_optional<BlackBox>(settings.Record.BlackBox->Before, settings.Record.BlackBox->After,
+                                                   settings.Record.Memory)
                     : std::nullopt),
       _thread([this] { Run(); })
 {

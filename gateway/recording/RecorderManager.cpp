@@ -35,21 +35,7 @@ RecordingSettings SettingsOf(const GatewayConfig &config)
     {
         throw std::invalid_argument("RecorderManager: the configuration does not say what to record");
     }
-    const RecordSettings &record = *config.Record;
-    RecordingSettings settings;
-    settings.Name = config.Node;
-    settings.Folder = record.Folder;
-    settings.SplitBytes = record.SplitSize;
-    settings.SplitTime = record.SplitTime;
-    settings.KeepBytes = record.Keep;
-    settings.FreeBytes = record.Free;
-    settings.RemovesOwnStart = true;
-    settings.MemoryBytes = record.Memory;
-    if (record.BlackBox)
-    {
-        settings.BlackBox = {record.BlackBox->Before, record.BlackBox->After};
-    }
-    return settings;
+    return {.Name = config.Node, .Record = *config.Record, .RemovesOwnStart = true};
 }
 
 Mcap::TextMap NodeMetadata(const GatewayConfig &config)
@@ -97,7 +83,7 @@ public:
           _workspace(workspace),
           _target(std::make_shared<RecordingTarget>(
               config.Node, workspace.GetClock(),
-              disk ? std::move(disk) : std::make_unique<FolderDisk>(_settings.Folder), _settings)),
+              disk ? std::move(disk) : std::make_unique<FolderDisk>(_settings.Record.Folder), _settings)),
           _config(config),
           _taps(_config, workspace, _target)
     {

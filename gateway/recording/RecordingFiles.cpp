@@ -105,7 +105,7 @@ void RecordingFiles::Take(const RecordingInbox::Batch &batch, Time now)
         {
             GiveUp(now, NoMore);
         }
-        else if (_writer && _writer->BytesToWrite() >= _settings.SplitBytes)
+        else if (_writer && _writer->BytesToWrite() >= _settings.Record.SplitSize)
         {
             Finish();
         }
@@ -140,7 +140,7 @@ void RecordingFiles::KeepLast(Stream &stream, const RecordingItem &item)
 
 void RecordingFiles::Service(Time now)
 {
-    if (_writer && now >= _openedAt + Nanoseconds(_settings.SplitTime))
+    if (_writer && now >= _openedAt + Nanoseconds(_settings.Record.SplitTime))
     {
         Finish();
     }
@@ -176,7 +176,7 @@ void RecordingFiles::Abandon(const std::string &problem, Time now)
 
 std::uint64_t RecordingFiles::Margin() const
 {
-    return std::max(_settings.FreeBytes, LeastMargin);
+    return std::max(_settings.Record.Free, LeastMargin);
 }
 
 void RecordingFiles::Close(Time now)
@@ -371,7 +371,7 @@ bool RecordingFiles::Remove(std::string name, const std::string &why)
         return false;
     }
     std::erase(_begun, name);  // by value: `name` may have been one of them
-    _removals.push_back("removed " + _settings.Folder + "/" + name + ", the oldest file of " + why);
+    _removals.push_back("removed " + _settings.Record.Folder + "/" + name + ", the oldest file of " + why);
     return true;
 }
 
@@ -385,11 +385,11 @@ void RecordingFiles::KeepWithinBytes()
     }
     for (const auto &[name, bytes] : own)
     {
-        if (total <= _settings.KeepBytes || name == _status.File)
+        if (total <= _settings.Record.Keep || name == _status.File)
         {
             return;
         }
-        if (Remove(name, _settings.Name + ": its files took more than the " + Mebibytes(_settings.KeepBytes) +
+        if (Remove(name, _settings.Name + ": its files took more than the " + Mebibytes(_settings.Record.Keep) +
                              " MiB that are kept"))
         {
             total -= bytes;
@@ -412,7 +412,7 @@ bool RecordingFiles::RemoveOwnStart()
 
 bool RecordingFiles::MakeRoom(std::uint64_t margin)
 {
-    if (_settings.KeepBytes != 0)
+    if (_settings.Record.Keep != 0)
     {
         KeepWithinBytes();
     }
@@ -423,7 +423,7 @@ bool RecordingFiles::MakeRoom(std::uint64_t margin)
     }
     if (free && *free < margin)
     {
-        _status.Problem = "only " + Mebibytes(*free) + " MiB are free in " + _settings.Folder + ", and " +
+        _status.Problem = "only " + Mebibytes(*free) + " MiB are free in " + _settings.Record.Folder + ", and " +
                           Mebibytes(Margin()) + " are to stay free; move earlier recordings away";
         return false;
     }

@@ -28,7 +28,7 @@ public:
           _logClock(clock),
           _recorder(std::move(disk), settings, [this] { return Now(); })
     {
-        if (settings.BlackBox)
+        if (settings.Record.BlackBox)
         {
             _events = Inbox().AddStream(JsonStreams::Events(_node));
         }

@@ -6,20 +6,26 @@
 #include "WebAddress.h"
 #include "WebSecrets.h"
 
+#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace Ground
 {
+
+struct ServerContext;
 
 // Serves the page and its pictures by HTTP, and to each open page, by a WebSocket on the same port, the
 // latest snapshot. Boost.Beast on a thread of its own.
@@ -86,7 +92,7 @@ public:
     void Stop();
 
     // The address of the server; with port 0 in the settings, this has the chosen port.
-    boost::asio::ip::tcp::endpoint Endpoint() const;
+    boost::asio::ip::tcp::endpoint Endpoint() const { return _endpoint; }
     // The addresses of the page with the token, and the fingerprint of its certificate, in lines for a
     // person.
     std::vector<std::string> Addresses() const;
@@ -96,8 +102,25 @@ public:
     Counters Count() const;
 
 private:
-    class Core;
-    const std::unique_ptr<Core> _core;
+    using Socket = boost::asio::ip::tcp::socket;
+
+    void Listen();
+    void Serve();
+    void Accept();
+    void OnAccepted(const boost::system::error_code &error, Socket socket);
+    void Take(Socket socket);
+    void Distribute();
+
+    const std::unique_ptr<ServerContext> _context;
+    boost::asio::ip::tcp::endpoint _endpoint;
+    // Made anew for each run: destroying it ends every session.
+    std::unique_ptr<boost::asio::io_context> _io;
+    std::unique_ptr<boost::asio::ip::tcp::acceptor> _acceptor;
+    std::optional<boost::asio::steady_timer> _pause;
+    std::thread _thread;
+    std::mutex _mutex;
+    boost::asio::io_context *_postable = nullptr;  // guarded; null: posting is not allowed
+    std::shared_ptr<const std::string> _next;      // guarded; not null: a call of Distribute waits
 };
 
 }  // namespace Ground

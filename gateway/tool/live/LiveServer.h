@@ -1,18 +1,25 @@
 #pragma once
 
+#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/steady_timer.hpp>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "live/LiveProtocol.h"
 
 namespace Rabit::Tool
 {
+
+struct LiveContext;
+class LiveSession;
 
 // Shows values to viewers, as they come: a server of the Foxglove WebSocket protocol (LiveProtocol), by
 // Boost.Beast on a thread of its own. Viewers can look, and cannot send values.
@@ -53,7 +60,7 @@ public:
     // Shows a value of that channel; `time` is its arrival, UTC in nanoseconds since 1970.
     void Show(std::uint32_t channel, std::uint64_t time, std::vector<std::uint8_t> bytes);
 
-    boost::asio::ip::tcp::endpoint Endpoint() const;
+    boost::asio::ip::tcp::endpoint Endpoint() const { return _endpoint; }
     struct Counters
     {
         std::uint64_t Viewers = 0;  // now
@@ -63,8 +70,19 @@ public:
     Counters Count() const;
 
 private:
-    class Core;
-    const std::unique_ptr<Core> _core;
+    void Listen();
+    void Accept();
+    void Serve();
+    std::vector<LiveSession *> Sessions() const;
+
+    const std::unique_ptr<LiveContext> _context;
+    std::atomic<std::uint32_t> _lastChannel{0};
+    std::atomic<std::size_t> _backlog{0};  // bytes
+    boost::asio::ip::tcp::endpoint _endpoint;
+    boost::asio::io_context _io{1};  // ends the sessions, which use the context
+    boost::asio::ip::tcp::acceptor _acceptor{_io};
+    boost::asio::steady_timer _pause{_io};
+    std::thread _thread;
 };
 
 }  // namespace Rabit::Tool

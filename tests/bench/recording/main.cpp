@@ -154,8 +154,8 @@ Rabit::RecordingSettings SettingsOf(const std::string &folder)
 {
     Rabit::RecordingSettings settings;
     settings.Name = "bench";
-    settings.Folder = folder;
-    settings.FreeBytes = 0;
+    settings.Record.Folder = folder;
+    settings.Record.Free = 0;
     return settings;
 }
 

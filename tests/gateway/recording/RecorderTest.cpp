@@ -23,9 +23,9 @@ RecordingSettings SettingsOf(const std::string &folder)
 {
     RecordingSettings settings;
     settings.Name = "uav1";
-    settings.Folder = folder;
-    settings.FreeBytes = 0;
-    settings.MemoryBytes = 1U << 20;
+    settings.Record.Folder = folder;
+    settings.Record.Free = 0;
+    settings.Record.Memory = 1U << 20;
     return settings;
 }
 
@@ -97,7 +97,7 @@ TEST(Recorder, NamesEachRemovedFileInTheLog)
     const std::string earlier = "uav1_000001_20250101T000000Z.mcap";
     disk->Put(earlier, 2U << 20);
     RecordingSettings settings = SettingsOf("/recordings");
-    settings.KeepBytes = 1U << 20;
+    settings.Record.Keep = 1U << 20;
     std::vector<std::string> lines;  // written by the recorder's thread, which has ended when they are read
     const auto listener =
         RabitLog::Listen([&](RabitLogLevel, const std::string &line) { lines.push_back(line); });

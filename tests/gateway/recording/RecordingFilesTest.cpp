@@ -22,8 +22,8 @@ protected:
     RecordingFilesTest()
     {
         _settings.Name = "uav1";
-        _settings.Folder = "/recordings";
-        _settings.FreeBytes = 100 * Mebibyte;
+        _settings.Record.Folder = "/recordings";
+        _settings.Record.Free = 100 * Mebibyte;
         _batch.NewStreams.push_back(std::make_shared<const RecordingStream>(
             RecordingStream{.Topic = "uav1/Pose", .SchemaName = "", .IsState = false}));
         _batch.NewStreams.push_back(std::make_shared<const RecordingStream>(
@@ -35,7 +35,7 @@ protected:
     {
         _disk.Capacity = 1000 * Mebibyte;
         _disk.Put("uav1_000001_20250101T000000Z.mcap", 6 * Mebibyte);
-        _settings.SplitBytes = 2 * Mebibyte;
+        _settings.Record.SplitSize = 2 * Mebibyte;
         for (int count = 0; count < 50; ++count)
         {
             Record(0, 100000);
@@ -116,8 +116,8 @@ TEST_F(RecordingFilesTest, HasAllButTheLastSecondOnTheDisk)
 // Reads all files as they would be after a loss of power before any write, while some are split and removed.
 TEST_F(RecordingFilesTest, HasAllButTheLastSecondOnTheDiskWhileFilesAreSplit)
 {
-    _settings.SplitBytes = 1 * Mebibyte;
-    _settings.KeepBytes = 4 * Mebibyte;
+    _settings.Record.SplitSize = 1 * Mebibyte;
+    _settings.Record.Keep = 4 * Mebibyte;
     _settings.Compresses = false;
     std::size_t looks = 0;
     _disk.BeforeWrite = [&]
@@ -149,7 +149,7 @@ TEST_F(RecordingFilesTest, HasAllButTheLastSecondOnTheDiskWhileFilesAreSplit)
 
 TEST_F(RecordingFilesTest, BeginsAFileWhenOneIsLargeEnough)
 {
-    _settings.SplitBytes = 2 * Mebibyte;
+    _settings.Record.SplitSize = 2 * Mebibyte;
     for (int count = 0; count < 50; ++count)
     {
         Record(0, 100000);
@@ -167,7 +167,7 @@ TEST_F(RecordingFilesTest, BeginsAFileWhenOneIsLargeEnough)
 
 TEST_F(RecordingFilesTest, BeginsAFileWhenOneIsLongEnoughAndRepeatsTheStates)
 {
-    _settings.SplitTime = std::chrono::minutes(1);
+    _settings.Record.SplitTime = std::chrono::minutes(1);
     Record(1);
     Pass(61000);
     ASSERT_EQ(_disk.Files.size(), 1U);
@@ -197,7 +197,7 @@ TEST_F(RecordingFilesTest, GoesOnBehindTheLastNumberThatIsThere)
 
 TEST_F(RecordingFilesTest, RemovesItsOldestWhenTheyAreTooMuch)
 {
-    _settings.KeepBytes = 10 * Mebibyte;
+    _settings.Record.Keep = 10 * Mebibyte;
     _disk.Put("uav1_000001_20250101T000000Z.mcap", 6 * Mebibyte);
     _disk.Put("uav1_000002_20240101T000000Z.mcap", 6 * Mebibyte);
     _disk.Put("uav2_000001_20230101T000000Z.mcap", 60 * Mebibyte);
