@@ -4,6 +4,8 @@
 #include "NumberText.h"
 #include "WrappedLines.h"
 
+#include <rabit/gateway/ClassRates.h>
+
 #include <array>
 #include <cstdio>
 
@@ -63,11 +65,8 @@ std::vector<std::string> Classes(const Rabit::Gateway::AirStatus &air)
         if (bytesPerS > 0)
             parts.push_back(std::string(name).append(" ").append(KiloText(bytesPerS)));
     };
-    add("presence", air.presence);
-    add("command", air.command);
-    add("state", air.state);
-    add("telemetry", air.telemetry);
-    add("bulk", air.bulk);
+    for (const auto &[name, rate] : Rabit::ClassRates)
+        add(name, air.*rate);
     add("discovery", air.discovery);
     return parts;
 }

@@ -2,6 +2,7 @@
 
 #include <rabit/gateway/TrafficClass.h>
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -11,11 +12,13 @@ namespace Rabit
 
 inline constexpr std::size_t TrafficClassCount = 5;
 
-// `presence`, `command`, `state`, `telemetry`, `bulk`.
-const char *WordOf(TrafficClass traffic);
+// The words that a configuration may use, in the order of the classes: all but `presence`.
+inline const std::vector<std::string> TrafficClassWords = {"command", "state", "telemetry", "bulk"};
 
-// The words that a configuration may use: all but `presence`. The word at index i is that of ChosenClass(i).
-const std::vector<std::string> &TrafficClassWords();
-TrafficClass ChosenClass(std::size_t index);
+// The class of the word at that index.
+inline TrafficClass ChosenClass(std::size_t index)
+{
+    return static_cast<TrafficClass>(index + 1);
+}
 
 }  // namespace Rabit

@@ -145,7 +145,7 @@ void ReadRecord(const YamlMap &map, GatewayConfig &config)
 
 std::optional<TrafficClass> ReadClass(const YamlMap &entry)
 {
-    const int choice = entry.ReadChoice("class", TrafficClassWords());
+    const int choice = entry.ReadChoice("class", TrafficClassWords);
     return choice < 0 ? std::nullopt : std::optional(ChosenClass(static_cast<std::size_t>(choice)));
 }
 

@@ -1,5 +1,7 @@
 #include "manager/AirReport.h"
 
+#include <rabit/gateway/ClassRates.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -15,20 +17,7 @@ constexpr AirReport::Duration ShortestTime = std::chrono::milliseconds(900);
 
 double &RateOf(TrafficClass traffic, Gateway::AirStatus &air)
 {
-    switch (traffic)
-    {
-        case TrafficClass::Command:
-            return air.command;
-        case TrafficClass::State:
-            return air.state;
-        case TrafficClass::Telemetry:
-            return air.telemetry;
-        case TrafficClass::Bulk:
-            return air.bulk;
-        case TrafficClass::Presence:
-            break;
-    }
-    return air.presence;
+    return air.*ClassRates.at(static_cast<std::size_t>(traffic)).Value;
 }
 
 // The words stay the same while sizes and the estimated capacity differ, so that the log says it once.
@@ -95,14 +84,15 @@ void AirReport::Fill(const TransportCounters &counters, std::optional<double> ca
 
 std::string AirReport::TextOf(const Gateway::AirStatus &air)
 {
-    std::string text;
-    for (const double rate : {air.budget, air.capacity, air.used, air.discovery, air.presence, air.command,
-                              air.state, air.telemetry, air.bulk})
+    std::string text = std::to_string(std::llround(air.budget));
+    const auto add = [&text](double rate) { text += ' ' + std::to_string(std::llround(rate)); };
+    add(air.capacity);
+    add(air.used);
+    add(air.discovery);
+    for (const auto &[name, rate] : ClassRates)
     {
-        text += std::to_string(std::llround(rate));
-        text += ' ';
+        add(air.*rate);
     }
-    text.pop_back();
     return text;
 }
 

@@ -1,5 +1,7 @@
 #include "AirText.h"
 
+#include <rabit/gateway/ClassRates.h>
+
 #include <charconv>
 #include <cstdint>
 
@@ -11,8 +13,12 @@ std::optional<Gateway::AirStatus> AirStatusOf(const std::string &report)
     Gateway::AirStatus air;
     const char *next = report.data();
     const char *const end = next + report.size();
-    for (double *const rate : {&air.budget, &air.capacity, &air.used, &air.discovery, &air.presence,
-                               &air.command, &air.state, &air.telemetry, &air.bulk})
+    std::vector<double *> rates{&air.budget, &air.capacity, &air.used, &air.discovery};
+    for (const auto &[name, rate] : ClassRates)
+    {
+        rates.push_back(&(air.*rate));
+    }
+    for (double *const rate : rates)
     {
         std::uint64_t number = 0;
         const auto [after, error] = std::from_chars(next, end, number);

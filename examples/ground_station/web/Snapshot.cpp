@@ -3,6 +3,8 @@
 #include "TargetName.h"
 #include "WireNames.h"
 
+#include <rabit/gateway/ClassRates.h>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -249,15 +251,13 @@ Json ToJson(const std::vector<Rabit::Gateway::Problem> &problems)
 Json ToJson(const Rabit::Gateway::AirStatus &air)
 {
     const auto limit = [](double value) { return value > 0 ? Rounded(value, 1) : Json(nullptr); };
-    return {{"budget", limit(air.budget)},
-            {"capacity", limit(air.capacity)},
-            {"used", Rounded(air.used, 1)},
-            {"presence", Rounded(air.presence, 1)},
-            {"command", Rounded(air.command, 1)},
-            {"state", Rounded(air.state, 1)},
-            {"telemetry", Rounded(air.telemetry, 1)},
-            {"bulk", Rounded(air.bulk, 1)},
-            {"discovery", Rounded(air.discovery, 1)}};
+    Json object = {{"budget", limit(air.budget)},
+                   {"capacity", limit(air.capacity)},
+                   {"used", Rounded(air.used, 1)},
+                   {"discovery", Rounded(air.discovery, 1)}};
+    for (const auto &[name, rate] : Rabit::ClassRates)
+        object[name] = Rounded(air.*rate, 1);
+    return object;
 }
 
 Json ToJson(const RadioUse &use)
