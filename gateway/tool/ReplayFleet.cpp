@@ -132,7 +132,7 @@ std::vector<ReplayNode::Topic> ReplayFleet::TopicsOf(const std::string &node) co
             std::none_of(topics.begin(), topics.end(),
                          [&stream](const ReplayNode::Topic &topic) { return topic.Message == stream.Name; }))
         {
-            topics.push_back({stream.Name, _streams[at].Type, stream.IsTelemetry});
+            topics.push_back({stream.Name, _streams[at].Type, stream.Qos});
         }
     }
     return topics;

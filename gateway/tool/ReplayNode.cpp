@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "Output.h"
+#include "names/QosProfileWords.h"
 
 namespace Rabit::Tool
 {
@@ -27,7 +28,7 @@ GatewayConfig ConfigFor(GatewayConfig config, const std::string &name,
         PublishRule rule;
         rule.Message = topic.Message;
         rule.Type = topic.Type->Name();
-        rule.Qos = topic.IsTelemetry ? QosProfile::Telemetry : QosProfile::State;
+        rule.Qos = ProfileOf(topic.Qos).value_or(QosProfile::State);
         config.Publish.push_back(std::move(rule));
     }
     return config;

@@ -27,7 +27,7 @@ public:
     {
         std::string Message;
         const MessageType *Type = nullptr;
-        bool IsTelemetry = false;
+        std::string Qos;
     };
     // A message must not be listed twice. Throws NetworkError.
     ReplayNode(GatewayConfig network, const std::string &name, const std::vector<Topic> &topics,

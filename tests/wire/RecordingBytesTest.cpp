@@ -92,7 +92,7 @@ TEST(RecordingBytes, AreReplayedAsThePostsOfTheirNode)
     EXPECT_EQ(stream.Name, "Pose");
     EXPECT_EQ(stream.Type, "Uav::Pose");
     EXPECT_EQ(stream.Recorder, "uav1");
-    EXPECT_TRUE(stream.IsTelemetry);
+    EXPECT_EQ(stream.Qos, "telemetry");
 }
 
 TEST(RecordingBytes, AreTheRecordedOnes)

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "names/NamePattern.h"
-#include "names/QosProfileWords.h"
 
 namespace Rabit::Replay
 {
@@ -73,12 +72,11 @@ bool FillMessage(const Mcap::Channel &channel, const std::string &recorder, Cand
     {
         return false;
     }
-    const std::string qos = Mcap::ValueOf(channel.Metadata, "rabit.qos");
     stream.Node = topic->first;
     stream.Name = topic->second;
-    stream.IsTelemetry = ProfileOf(qos) == QosProfile::Telemetry;
+    stream.Qos = Mcap::ValueOf(channel.Metadata, "rabit.qos");
     candidate.IsOwn = kind == "posted";
-    candidate.IsPublished = qos != "none";
+    candidate.IsPublished = stream.Qos != "none";
     const std::string told = Mcap::ValueOf(channel.Metadata, "rabit.recorded_by");
     stream.Recorder = candidate.IsOwn ? stream.Node : told.empty() ? recorder : told;
     if (stream.Type == FleetType)

@@ -63,8 +63,8 @@ TEST_F(ReplayPlanTest, WhatANodePublishedAndWhatItHadFromOthersIsPlayed)
                 UnorderedElementsAre("uav1/Pose<uav1", "uav1/MissionState<uav1", "uav2/Pose<uav1", "uav1!"));
     EXPECT_THAT(plan.Nodes, ElementsAre("uav1", "uav2"));
     EXPECT_THAT(plan.Domains, ElementsAre("7"));
-    EXPECT_TRUE(plan.Streams.at(0).IsTelemetry);
-    EXPECT_FALSE(plan.Streams.at(1).IsTelemetry);
+    EXPECT_EQ(plan.Streams.at(0).Qos, "telemetry");
+    EXPECT_EQ(plan.Streams.at(1).Qos, "state");
     EXPECT_EQ(plan.Streams.at(0).Type, "Uav::Pose");
     EXPECT_EQ(plan.Streams.at(0).IdlText, "text");
 }
