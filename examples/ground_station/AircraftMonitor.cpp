@@ -1,6 +1,10 @@
 #include "AircraftMonitor.h"
 
+#include "WireNames.h"
+
 #include <rabit/PublishSubscribeMessage.h>
+
+#include <boost/algorithm/string/case_conv.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,28 +23,10 @@ std::string WithNumber(const std::string &mode, std::uint32_t id, const CommandT
 
 std::string MissionText(const Uav::MissionState &mission, const CommandTally &tally)
 {
-    switch (mission.mode)
-    {
-        case Uav::MissionMode::MISSION_IDLE:
-            return "IDLE";
-        case Uav::MissionMode::MISSION_TRANSIT:
-            return "TRANSIT";
-        case Uav::MissionMode::MISSION_SEARCH:
-            return "SEARCH";
-        case Uav::MissionMode::MISSION_CONFIRM:
-            return "CONFIRM";
-        case Uav::MissionMode::MISSION_VALIDATE:
-            return "VALIDATE";
-        case Uav::MissionMode::MISSION_TRACK:
-            return "TRACK";
-        case Uav::MissionMode::MISSION_HOME:
-            return "HOME";
-        case Uav::MissionMode::MISSION_GOTO:
-            return WithNumber("GOTO", mission.last_command, tally);
-        case Uav::MissionMode::MISSION_HOLD:
-            return WithNumber("HOLD", mission.last_command, tally);
-    }
-    return "?";
+    const bool isCommanded =
+        mission.mode == Uav::MissionMode::MISSION_GOTO || mission.mode == Uav::MissionMode::MISSION_HOLD;
+    const std::string mode = boost::algorithm::to_upper_copy(WireName(mission.mode));
+    return isCommanded ? WithNumber(mode, mission.last_command, tally) : mode;
 }
 }  // namespace
 

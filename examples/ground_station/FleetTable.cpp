@@ -1,10 +1,9 @@
 #include "FleetTable.h"
 
+#include "NumberText.h"
 #include "PathText.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <utility>
 
 namespace Ground
@@ -15,13 +14,6 @@ namespace
 constexpr std::size_t NodeWidth = 8;
 constexpr std::size_t MaxNodeWidth = 24;
 constexpr std::size_t MissionWidth = 10;
-
-std::string Format(const char *format, double value)
-{
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
-}
 
 std::string Left(const std::string &text, std::size_t width)
 {

@@ -6,6 +6,14 @@
 
 namespace Ground
 {
+
+std::string Format(const char *format, double value)
+{
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
+}
+
 namespace
 {
 constexpr double Largest = 99999;

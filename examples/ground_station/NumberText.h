@@ -6,6 +6,9 @@
 namespace Ground
 {
 
+// Writes a number by a format of printf, such as `%.1f m`; 63 characters at most.
+std::string Format(const char *format, double value);
+
 // `-`: not known (not finite, or negative).
 
 // Bytes a second, with the unit: `850 B/s`, `3.2 kB/s`, `1.5 MB/s`.

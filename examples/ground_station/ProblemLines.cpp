@@ -1,10 +1,9 @@
 #include "ProblemLines.h"
 
 #include "NodeState.h"
+#include "NumberText.h"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace Ground
 {
@@ -13,17 +12,10 @@ namespace
 constexpr std::size_t LongestName = 64;
 constexpr std::size_t LongestReason = 400;
 
-std::string Seconds(double seconds, const char *format)
-{
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), format, seconds);
-    return text.data();
-}
-
 std::string Count(std::size_t problems, double fleetAgeS)
 {
     return std::to_string(problems) + (problems == 1 ? " problem" : " problems") +
-           (fleetAgeS > FleetFreshS ? " (" + Seconds(fleetAgeS, "%.0f s") + " ago)" : "");
+           (fleetAgeS > FleetFreshS ? " (" + Format("%.0f s", fleetAgeS) + " ago)" : "");
 }
 
 std::string More(std::size_t problems)
@@ -80,7 +72,7 @@ std::string ProblemLogLine(const std::vector<Rabit::Gateway::Problem> &problems,
 {
     if (problems.empty())
         return "";
-    std::string line = Seconds(elapsedS, "%7.1f s  ") + Count(problems.size(), fleetAgeS) + ": ";
+    std::string line = Format("%7.1f s  ", elapsedS) + Count(problems.size(), fleetAgeS) + ": ";
     for (std::size_t i = 0; i < std::min(problems.size(), ProblemsOnScreen); ++i)
         line += (i > 0 ? ", " : "") + Name(problems[i], " (", ")");
     return problems.size() > ProblemsOnScreen ? line + " " + More(problems.size()) : line;

@@ -6,21 +6,11 @@
 
 #include <rabit/gateway/ClassRates.h>
 
-#include <array>
-#include <cstdio>
-
 namespace Ground
 {
 namespace
 {
 constexpr std::size_t LongestName = 64;
-
-std::string Seconds(double seconds, const char *format)
-{
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), format, seconds);
-    return text.data();
-}
 
 std::string Limits(const Rabit::Gateway::AirStatus &air)
 {
@@ -53,7 +43,7 @@ std::string Summary(const RadioUse &use, double fleetAgeS)
     if (!held.empty())
         text += "; held back: " + held;
     if (fleetAgeS > FleetFreshS)
-        text.append(" (").append(Seconds(fleetAgeS, "%.0f s")).append(" ago)");
+        text.append(" (").append(Format("%.0f s", fleetAgeS)).append(" ago)");
     return text;
 }
 
@@ -128,7 +118,7 @@ std::string RadioLogLine(const RadioUse &use, double fleetAgeS, double elapsedS)
 {
     if (!use.Known)
         return "";
-    std::string line = Seconds(elapsedS, "%7.1f s  ") + "radio " + Summary(use, fleetAgeS);
+    std::string line = Format("%7.1f s  ", elapsedS) + "radio " + Summary(use, fleetAgeS);
     if (use.IsLimited())
         for (const std::string &classes : WrappedLines("; kB/s:", Classes(use.Air), std::string::npos))
             line += classes;

@@ -1,6 +1,10 @@
 #include "TargetLines.h"
 
 #include "FleetTable.h"
+#include "NumberText.h"
+#include "WireNames.h"
+
+#include <boost/algorithm/string/case_conv.hpp>
 
 #include <array>
 #include <cstdio>
@@ -14,20 +18,7 @@ constexpr std::size_t LongestName = 20;
 
 std::string ToText(Uav::TargetStage stage)
 {
-    switch (stage)
-    {
-        case Uav::TargetStage::TARGET_FOUND:
-            return "FOUND";
-        case Uav::TargetStage::TARGET_VALIDATING:
-            return "VALIDATING";
-        case Uav::TargetStage::TARGET_VALIDATED:
-            return "VALIDATED";
-        case Uav::TargetStage::TARGET_TRACKED:
-            return "TRACKED";
-        case Uav::TargetStage::TARGET_REJECTED:
-            return "REJECTED";
-    }
-    return "?";
+    return boost::algorithm::to_upper_copy(WireName(stage));
 }
 
 std::string NameOf(const Uav::TargetName &name)
@@ -50,11 +41,7 @@ std::string TargetLine(const FoundTarget &target)
     if (!target.Finding.validated_by.empty())
         line += "  validated by " + Printable(target.Finding.validated_by, LongestName);
     if (target.Finding.tracked_s > 0)
-    {
-        std::snprintf(text.data(), text.size(), ", followed for %.0f s",
-                      static_cast<double>(target.Finding.tracked_s));
-        line += text.data();
-    }
+        line += Format(", followed for %.0f s", static_cast<double>(target.Finding.tracked_s));
     for (const Uav::TargetName &name : target.Formerly)
         line += ", was also " + NameOf(name);
     return line;

@@ -1,8 +1,8 @@
 #include "Verdict.h"
 
+#include "NumberText.h"
+
 #include <algorithm>
-#include <array>
-#include <cstdio>
 
 namespace Ground
 {
@@ -10,9 +10,7 @@ namespace
 {
 std::string OneDecimal(double value)
 {
-    std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), "%.1f", value);
-    return text.data();
+    return Format("%.1f", value);
 }
 
 std::string Percent(const AircraftResult &result)

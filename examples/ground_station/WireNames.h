@@ -6,13 +6,18 @@
 #include "ground.idl.h"
 #include "uav.idl.h"
 
+#include <string>
+
 namespace Ground
 {
 
-const char *WireName(RowState state);
-const char *WireName(Uav::MissionMode mode);
-const char *WireName(Uav::TargetStage stage);
-const char *WireName(OrderKind kind);
-const char *WireName(CommandProgress progress);
+std::string WireName(RowState state);
+// `MISSION_IDLE` is `idle`, `PROGRESS_IN_DOUBT` is `in doubt`.
+std::string WireNameOf(const std::string &enumerator);
+template <typename Enum>
+std::string WireName(Enum value)
+{
+    return WireNameOf(ToString(value));
+}
 
 }  // namespace Ground

@@ -2,8 +2,6 @@
 
 #include "WireNames.h"
 
-#include <boost/algorithm/string/case_conv.hpp>
-
 #include <iterator>
 
 namespace Ground
@@ -80,8 +78,7 @@ void EventLog::LookAtAircraft(const AircraftData &aircraft)
     {
         if (known.State || aircraft.State != RowState::Waiting)
             Add(aircraft.Replay ? Weight::Info : WeightOf(aircraft.State), aircraft.Node,
-                WithReason(boost::algorithm::to_upper_copy(std::string(WireName(aircraft.State))),
-                           aircraft.Reason));
+                WithReason(ToText(aircraft.State), aircraft.Reason));
         known.State = aircraft.State;
     }
     if (aircraft.Mission && known.Mode != aircraft.Mission.Content->mode)
