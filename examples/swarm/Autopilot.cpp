@@ -6,26 +6,6 @@
 
 namespace Swarm
 {
-namespace
-{
-Uav::FlightPhase PhaseOf(FlightPhase phase)
-{
-    switch (phase)
-    {
-        case FlightPhase::Idle:
-            return Uav::FlightPhase::FLIGHT_IDLE;
-        case FlightPhase::Track:
-            return Uav::FlightPhase::FLIGHT_RECORDING;
-        case FlightPhase::Pattern:
-            return Uav::FlightPhase::FLIGHT_PATTERN;
-        case FlightPhase::Goto:
-            return Uav::FlightPhase::FLIGHT_COURSE;
-        case FlightPhase::Hold:
-            return Uav::FlightPhase::FLIGHT_HOLD;
-    }
-    return Uav::FlightPhase::FLIGHT_IDLE;
-}
-}  // namespace
 
 Autopilot::Autopilot(const Names &names, std::unique_ptr<Vehicle> vehicle, Rabit::RabitWorkspace &workspace)
     : RabitManager(names.Own("Autopilot"), workspace), _vehicle(std::move(vehicle))
@@ -94,7 +74,7 @@ void Autopilot::PostPose(const Motion &motion)
 
 void Autopilot::PostModeIfChanged(std::chrono::nanoseconds now)
 {
-    const Uav::FlightPhase phase = PhaseOf(_vehicle->Phase());
+    const Uav::FlightPhase phase = _vehicle->Phase();
     const std::string notReady = _vehicle->NotReady(now);
     if (_mode->WasPosted() && _mode->phase == phase && _mode->course == _course &&
         _mode->not_ready == notReady)

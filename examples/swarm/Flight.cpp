@@ -22,7 +22,9 @@ Motion StartOf(const Circle &circle)
 }  // namespace
 
 Flight::Flight(const Circle &pattern)
-    : _pattern(pattern), _airframe(Airframe(StartOf(pattern), pattern)), _phase(FlightPhase::Pattern)
+    : _pattern(pattern),
+      _airframe(Airframe(StartOf(pattern), pattern)),
+      _phase(Uav::FlightPhase::FLIGHT_PATTERN)
 {
 }
 
@@ -68,8 +70,8 @@ Motion Flight::At(double seconds)
     {
         _airframe->Advance(seconds - _nowS);
         _nowS = seconds;
-        if (_phase == FlightPhase::Goto && _airframe->IsOnCircle())
-            _phase = FlightPhase::Hold;
+        if (_phase == Uav::FlightPhase::FLIGHT_COURSE && _airframe->IsOnCircle())
+            _phase = Uav::FlightPhase::FLIGHT_HOLD;
         return _airframe->Now();
     }
     _nowS = seconds;
@@ -86,7 +88,7 @@ void Flight::FlyTo(const GeoPoint &point, double speedMps, double seconds)
         _airframe.emplace(now, hold);
     _airframe->FlyTo(hold, speedMps);
     _catchUp.reset();
-    _phase = _airframe->IsOnCircle() ? FlightPhase::Hold : FlightPhase::Goto;
+    _phase = _airframe->IsOnCircle() ? Uav::FlightPhase::FLIGHT_HOLD : Uav::FlightPhase::FLIGHT_COURSE;
 }
 
 void Flight::Release(double seconds)
@@ -95,14 +97,14 @@ void Flight::Release(double seconds)
     if (!_track)
     {
         _airframe->FlyTo(_pattern, MaxHoldSpeedMps);
-        _phase = FlightPhase::Pattern;
+        _phase = Uav::FlightPhase::FLIGHT_PATTERN;
         return;
     }
     if (!_airframe)
         return;  // flies the track, or catches up with it
     _catchUp = WayToTrack(now, seconds);
     _airframe.reset();
-    _phase = FlightPhase::Track;
+    _phase = Uav::FlightPhase::FLIGHT_RECORDING;
 }
 
 }  // namespace Swarm

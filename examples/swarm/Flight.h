@@ -3,22 +3,13 @@
 #include "Airframe.h"
 #include "Geo.h"
 #include "Track.h"
+#include "uav.idl.h"
 
 #include <optional>
 #include <utility>
 
 namespace Swarm
 {
-
-// The phase of an aircraft's flight.
-enum class FlightPhase
-{
-    Idle,     // flies nothing itself: somebody else flies the aircraft
-    Track,    // a recorded track
-    Pattern,  // its own circle, as it has no track
-    Goto,     // on the way to a commanded point
-    Hold      // circling the commanded point
-};
 
 // The flight of one simulated aircraft. It flies a recorded track or its own circle. FlyTo sends it to a
 // point, which it then circles; Release sends it back. It joins the track along a smooth curve, at the
@@ -33,7 +24,9 @@ public:
     static constexpr double MaxHoldSpeedMps = 12;
     static constexpr double CatchUpSpeedMps = 12;
 
-    explicit Flight(Swarm::Track track) : _track(std::move(track)), _phase(FlightPhase::Track) {}
+    explicit Flight(Swarm::Track track) : _track(std::move(track)), _phase(Uav::FlightPhase::FLIGHT_RECORDING)
+    {
+    }
     explicit Flight(const Circle &pattern);
 
     // The motion at that time.
@@ -43,7 +36,7 @@ public:
     // Leaves for the track or its own circle.
     void Release(double seconds);
     // As of the last call of At, FlyTo or Release.
-    FlightPhase Phase() const { return _phase; }
+    Uav::FlightPhase Phase() const { return _phase; }
 
 private:
     // A curve from one motion to another: a cubic Hermite spline.
@@ -65,7 +58,7 @@ private:
     std::optional<Airframe> _airframe;  // none while it flies the track or catches up with it
     std::optional<CatchUp> _catchUp;
     double _nowS = 0;
-    FlightPhase _phase;
+    Uav::FlightPhase _phase;
 };
 
 }  // namespace Swarm

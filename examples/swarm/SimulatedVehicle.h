@@ -29,7 +29,7 @@ public:
         _flight.FlyTo(point, speedMps, SecondsAt(now));
     }
     void Release(Time now) override { _flight.Release(SecondsAt(now)); }
-    FlightPhase Phase() const override { return _flight.Phase(); }
+    Uav::FlightPhase Phase() const override { return _flight.Phase(); }
     int DelayMSec(Time now) const override
     {
         return static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(_times.UntilDue(now)).count());

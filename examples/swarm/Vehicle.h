@@ -31,7 +31,7 @@ public:
     // Ends the flight to a point: back to its own track or pattern, if it has one.
     virtual void Release(Time now) = 0;
     // The phase of flight, as of the last call of Update, FlyTo or Release.
-    virtual FlightPhase Phase() const = 0;
+    virtual Uav::FlightPhase Phase() const = 0;
     // Milliseconds to wait before the next Update.
     virtual int DelayMSec(Time now) const = 0;
 };

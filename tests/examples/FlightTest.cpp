@@ -12,7 +12,6 @@ namespace
 using Swarm::Between;
 using Swarm::Circle;
 using Swarm::Flight;
-using Swarm::FlightPhase;
 using Swarm::GeoPoint;
 using Swarm::Motion;
 
@@ -54,7 +53,7 @@ double HoldsAfterS(Flight &flight, double start)
     for (double t = 0; t < 1000; t += 0.1)
     {
         flight.At(start + t);
-        if (flight.Phase() == FlightPhase::Hold)
+        if (flight.Phase() == Uav::FlightPhase::FLIGHT_HOLD)
             return t;
     }
     return 1000;
@@ -69,14 +68,14 @@ TEST(Flight, OfAPatternStaysOnItsCircleAtItsSpeed)
         EXPECT_NEAR(DistanceM(Home, motion.Position), 60, 2) << "at " << t;
         EXPECT_NEAR(SpeedMps(motion), 8, 1e-6);
     }
-    EXPECT_EQ(flight.Phase(), FlightPhase::Pattern);
+    EXPECT_EQ(flight.Phase(), Uav::FlightPhase::FLIGHT_PATTERN);
 }
 
 TEST(Flight, OfATrackFollowsIt)
 {
     Flight flight(StandingTrack());
     EXPECT_DOUBLE_EQ(flight.At(3).Position.AltitudeM, 50);
-    EXPECT_EQ(flight.Phase(), FlightPhase::Track);
+    EXPECT_EQ(flight.Phase(), Uav::FlightPhase::FLIGHT_RECORDING);
 }
 
 TEST(Flight, MovesAsItsVelocitySays)
@@ -139,7 +138,7 @@ TEST(Flight, ToAPointKeepsItsSpeedOnTheWay)
     flight.FlyTo(Moved(Home, {1000, 0, 0}), 16, 0);
     for (double t = 10; t < 50; t += 1)
         EXPECT_NEAR(SpeedMps(flight.At(t)), 16, 1e-6) << "at " << t;
-    EXPECT_EQ(flight.Phase(), FlightPhase::Goto);
+    EXPECT_EQ(flight.Phase(), Uav::FlightPhase::FLIGHT_COURSE);
     EXPECT_LT(HoldsAfterS(flight, 50), 25);
 }
 
@@ -165,7 +164,7 @@ TEST(Flight, ToThePointWhereItIsHoldsAroundIt)
     Flight flight(StandingTrack());
     flight.FlyTo(Home, 10, 0);
     flight.At(30);
-    EXPECT_EQ(flight.Phase(), FlightPhase::Hold);
+    EXPECT_EQ(flight.Phase(), Uav::FlightPhase::FLIGHT_HOLD);
     EXPECT_NEAR(LevelDistanceM(Home, flight.At(60).Position), Flight::HoldRadiusM, 3);
 }
 
@@ -174,7 +173,7 @@ TEST(Flight, HoldsUntilItIsToldOtherwise)
     Flight flight(StandingTrack());
     flight.FlyTo(Moved(Home, {100, 0, 0}), 10, 0);
     flight.At(3600);
-    EXPECT_EQ(flight.Phase(), FlightPhase::Hold);
+    EXPECT_EQ(flight.Phase(), Uav::FlightPhase::FLIGHT_HOLD);
 }
 
 TEST(Flight, OfATrackGoesBackToItWhenReleased)
@@ -182,7 +181,7 @@ TEST(Flight, OfATrackGoesBackToItWhenReleased)
     Flight flight(StandingTrack());
     flight.FlyTo(Moved(Home, {300, 0, 0}), 12, 0);
     flight.Release(60);
-    EXPECT_EQ(flight.Phase(), FlightPhase::Track);
+    EXPECT_EQ(flight.Phase(), Uav::FlightPhase::FLIGHT_RECORDING);
     EXPECT_GT(DistanceM(Home, flight.At(62).Position), 100);
     EXPECT_NEAR(DistanceM(Home, flight.At(100).Position), 0, 0.01);
 }
@@ -220,7 +219,7 @@ TEST(Flight, OfAPatternGoesBackToItWhenReleased)
     Flight flight(Circle{Home, 60, 8});
     flight.FlyTo(Moved(Home, {300, 0, 0}), 12, 0);
     flight.Release(60);
-    EXPECT_EQ(flight.Phase(), FlightPhase::Pattern);
+    EXPECT_EQ(flight.Phase(), Uav::FlightPhase::FLIGHT_PATTERN);
     EXPECT_NEAR(LevelDistanceM(Home, flight.At(200).Position), 60, 3);
 }
 

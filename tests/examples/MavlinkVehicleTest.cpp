@@ -168,7 +168,7 @@ TEST_F(MavlinkVehicleTest, ItFliesNoCommandWhileNoAutopilotIsHeard)
 {
     EXPECT_EQ(vehicle.NotReady(now), "no autopilot is heard");
     vehicle.FlyTo({47.5, 8.25, 600}, 10, now);
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Idle);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_IDLE);
     Run(1s);
     EXPECT_EQ(vehicle.NotReady(now), "");
     Run(4s, false);
@@ -188,12 +188,12 @@ TEST_F(MavlinkVehicleTest, NoPointIsSentToAnAutopilotThatIsGone)
 TEST_F(MavlinkVehicleTest, ItIsIdleThenOnItsWayThenHolds)
 {
     Run(1s);
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Idle);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_IDLE);
     vehicle.FlyTo({47.5, 8.5456, 520.5}, 10, now);
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Goto);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_COURSE);
     Hear(Position(474'999'000));
     vehicle.Update(now);
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Hold);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_HOLD);
 }
 
 TEST(ByteChannel, AWrongDescriptionIsOneClearLine)

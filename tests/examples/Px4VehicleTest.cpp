@@ -155,10 +155,10 @@ TEST_F(Px4VehicleTest, CommandsAPointAndSaysWhatItFlies)
     EXPECT_EQ(command->param7, 520.0F);
     EXPECT_EQ(command->target_system, 7);
     EXPECT_TRUE(command->from_external);
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Goto);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_COURSE);
     PostPosition(47.0099);
     vehicle.Update(Now());
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Hold);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_HOLD);
 }
 
 TEST_F(Px4VehicleTest, CommandsAgainUntilItIsAnswered)
@@ -172,7 +172,7 @@ TEST_F(Px4VehicleTest, CommandsAgainUntilItIsAnswered)
     clock->Advance(1s);
     vehicle.Update(Now());
     EXPECT_FALSE(command->FetchMessage());
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Goto);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_COURSE);
 }
 
 TEST_F(Px4VehicleTest, CommandsThreeTimesAtMost)
@@ -194,7 +194,7 @@ TEST_F(Px4VehicleTest, SaysThatAndWhyAPointWasRefused)
     FlyTo();
     PostAnswer(Answer::VEHICLE_CMD_RESULT_DENIED);
     vehicle.Update(Now());
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Idle);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_IDLE);
     EXPECT_EQ(vehicle.NotReady(Now()), "PX4 refused the point: denied");
     clock->Advance(5s);
     PostStatus();
@@ -210,7 +210,7 @@ TEST_F(Px4VehicleTest, TakesNoAnswerToSomebodyElsesCommand)
     answer->result = Answer::VEHICLE_CMD_RESULT_DENIED;
     answer->PostMessage();
     vehicle.Update(Now());
-    EXPECT_EQ(vehicle.Phase(), FlightPhase::Goto);
+    EXPECT_EQ(vehicle.Phase(), Uav::FlightPhase::FLIGHT_COURSE);
 }
 
 TEST(Px4Topics, AreBelowTheNamespaceOfTheAircraft)

@@ -152,14 +152,14 @@ void MavlinkVehicle::Send(MavlinkFrame frame)
     static_cast<void>(_channel->Send(EncodeMavlink(frame)));  // lost frames are sent again
 }
 
-FlightPhase MavlinkVehicle::Phase() const
+Uav::FlightPhase MavlinkVehicle::Phase() const
 {
     if (!_target)
     {
-        return FlightPhase::Idle;
+        return Uav::FlightPhase::FLIGHT_IDLE;
     }
     const bool there = _positionKnown && Between(_motion.Position, *_target).LengthM() < ArrivedM;
-    return there ? FlightPhase::Hold : FlightPhase::Goto;
+    return there ? Uav::FlightPhase::FLIGHT_HOLD : Uav::FlightPhase::FLIGHT_COURSE;
 }
 
 int MavlinkVehicle::DelayMSec(Time /*now*/) const

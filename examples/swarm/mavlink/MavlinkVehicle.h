@@ -38,7 +38,7 @@ public:
     void FlyTo(const GeoPoint &point, double speedMps, Time now) override;
     // Stops sending the point; the autopilot itself decides how to go on.
     void Release(Time /*now*/) override { _target.reset(); }
-    FlightPhase Phase() const override;
+    Uav::FlightPhase Phase() const override;
     int DelayMSec(Time now) const override;
 
     bool IsHeard(Time now) const { return _system && now - _heardAt <= SilentAfter; }

@@ -10,21 +10,6 @@
 namespace Swarm
 {
 
-GeoPoint PlaceOf(const Uav::Finding &finding)
-{
-    return {finding.latitude_deg, finding.longitude_deg, 0};
-}
-
-GeoPoint PlaceOf(const Uav::Target &target)
-{
-    return {target.latitude_deg, target.longitude_deg, 0};
-}
-
-GeoPoint PlaceOf(const Uav::TargetReport &report)
-{
-    return {report.latitude_deg, report.longitude_deg, 0};
-}
-
 double LevelDistanceM(const GeoPoint &a, const GeoPoint &b)
 {
     const Offset way = Between(a, b);

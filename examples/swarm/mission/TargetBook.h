@@ -74,9 +74,11 @@ struct SpokenOf
 bool IsSame(const SpokenOf &a, const SpokenOf &b, const Uav::Targets &targets);
 
 // Where it is, at no height.
-GeoPoint PlaceOf(const Uav::Finding &finding);
-GeoPoint PlaceOf(const Uav::Target &target);
-GeoPoint PlaceOf(const Uav::TargetReport &report);
+template <typename Seen>
+GeoPoint PlaceOf(const Seen &seen)
+{
+    return {seen.latitude_deg, seen.longitude_deg, 0};
+}
 // Level distance in metres.
 double LevelDistanceM(const GeoPoint &a, const GeoPoint &b);
 

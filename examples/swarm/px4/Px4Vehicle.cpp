@@ -202,13 +202,14 @@ void Px4Vehicle::Release(Time /*now*/)
     _awaitsAnswer = false;
 }
 
-FlightPhase Px4Vehicle::Phase() const
+Uav::FlightPhase Px4Vehicle::Phase() const
 {
     if (!_target || !IsArmed())
     {
-        return FlightPhase::Idle;
+        return Uav::FlightPhase::FLIGHT_IDLE;
     }
-    return Between(_motion.Position, *_target).LengthM() < ArrivedM ? FlightPhase::Hold : FlightPhase::Goto;
+    return Between(_motion.Position, *_target).LengthM() < ArrivedM ? Uav::FlightPhase::FLIGHT_HOLD
+                                                                    : Uav::FlightPhase::FLIGHT_COURSE;
 }
 
 int Px4Vehicle::DelayMSec(Time /*now*/) const

@@ -49,7 +49,7 @@ public:
     void FlyTo(const GeoPoint &point, double speedMps, Time now) override;
     // Stops sending: PX4 flies on to the last point, and holds there.
     void Release(Time /*now*/) override;
-    FlightPhase Phase() const override;
+    Uav::FlightPhase Phase() const override;
     int DelayMSec(Time now) const override;
 
 private:
