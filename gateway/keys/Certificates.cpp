@@ -11,6 +11,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "keys/KeyFiles.h"
+
 namespace Rabit::Keys
 {
 namespace
@@ -26,59 +28,11 @@ IntegerPtr RandomSerial()
     return Must(IntegerPtr(BN_to_ASN1_INTEGER(number.get(), nullptr)), "make a serial number");
 }
 
-void AddExtension(X509 &certificate, const X509 &authority, int kind, const char *value)
-{
-    X509V3_CTX context;
-    X509V3_set_ctx(&context, const_cast<X509 *>(&authority), &certificate, nullptr, nullptr, 0);
-    using ExtensionPtr = std::unique_ptr<X509_EXTENSION, FreedBy<&X509_EXTENSION_free>>;
-    const ExtensionPtr extension =
-        Must(ExtensionPtr(X509V3_EXT_conf_nid(nullptr, &context, kind, const_cast<char *>(value))),
-             "make a certificate");
-    Must(X509_add_ext(&certificate, extension.get(), -1) == 1, "make a certificate");
-}
-
-CertificatePtr Begin(const X509_NAME &subject, EVP_PKEY &key, const Validity &validity)
-{
-    constexpr long version3 = 2;
-    CertificatePtr certificate = Must(CertificatePtr(X509_new()), "make a certificate");
-    const IntegerPtr serial = RandomSerial();
-    const bool done = X509_set_version(certificate.get(), version3) == 1 &&
-                      X509_set_serialNumber(certificate.get(), serial.get()) == 1 &&
-                      ASN1_TIME_set(X509_getm_notBefore(certificate.get()), validity.From) != nullptr &&
-                      ASN1_TIME_set(X509_getm_notAfter(certificate.get()), validity.To) != nullptr &&
-                      X509_set_subject_name(certificate.get(), &subject) == 1 &&
-                      X509_set_pubkey(certificate.get(), &key) == 1;
-    Must(done, "make a certificate");
-    return certificate;
-}
-
 std::time_t TimeOf(const ASN1_TIME &time)
 {
     std::tm parts = {};
     Must(ASN1_TIME_to_tm(&time, &parts) == 1, "read a date");
     return ::timegm(&parts);
-}
-
-std::string Field(const X509_NAME &name, int field)
-{
-    const int at = X509_NAME_get_index_by_NID(&name, field, -1);
-    const X509_NAME_ENTRY *entry = at < 0 ? nullptr : X509_NAME_get_entry(&name, at);
-    if (entry == nullptr)
-    {
-        return {};
-    }
-    const ASN1_STRING *text = X509_NAME_ENTRY_get_data(entry);
-    return {reinterpret_cast<const char *>(ASN1_STRING_get0_data(text)),
-            static_cast<std::size_t>(ASN1_STRING_length(text))};
-}
-
-std::string TimeText(std::time_t time, const char *format)
-{
-    std::tm parts = {};
-    std::array<char, 32> text{};
-    ::gmtime_r(&time, &parts);
-    std::strftime(text.data(), text.size(), format, &parts);
-    return text.data();
 }
 
 template <typename Thing>
@@ -98,6 +52,32 @@ KeyPtr MakeKey()
     return Must(KeyPtr(EVP_EC_gen("P-256")), "make a key");
 }
 
+void AddExtension(X509 &certificate, const X509 &authority, int kind, const char *value)
+{
+    X509V3_CTX context;
+    X509V3_set_ctx(&context, const_cast<X509 *>(&authority), &certificate, nullptr, nullptr, 0);
+    using ExtensionPtr = std::unique_ptr<X509_EXTENSION, FreedBy<&X509_EXTENSION_free>>;
+    const ExtensionPtr extension =
+        Must(ExtensionPtr(X509V3_EXT_conf_nid(nullptr, &context, kind, const_cast<char *>(value))),
+             "make a certificate");
+    Must(X509_add_ext(&certificate, extension.get(), -1) == 1, "make a certificate");
+}
+
+CertificatePtr BeginCertificate(const X509_NAME &subject, EVP_PKEY &key, const Validity &validity)
+{
+    constexpr long version3 = 2;
+    CertificatePtr certificate = Must(CertificatePtr(X509_new()), "make a certificate");
+    const IntegerPtr serial = RandomSerial();
+    const bool done = X509_set_version(certificate.get(), version3) == 1 &&
+                      X509_set_serialNumber(certificate.get(), serial.get()) == 1 &&
+                      ASN1_TIME_set(X509_getm_notBefore(certificate.get()), validity.From) != nullptr &&
+                      ASN1_TIME_set(X509_getm_notAfter(certificate.get()), validity.To) != nullptr &&
+                      X509_set_subject_name(certificate.get(), &subject) == 1 &&
+                      X509_set_pubkey(certificate.get(), &key) == 1;
+    Must(done, "make a certificate");
+    return certificate;
+}
+
 CertificatePtr MakeAuthority(const std::string &fleet, const std::string &name, EVP_PKEY &key,
                              const Validity &validity)
 {
@@ -111,7 +91,7 @@ CertificatePtr MakeAuthority(const std::string &fleet, const std::string &name, 
     };
     add("O", fleet);
     add("CN", name);
-    CertificatePtr certificate = Begin(*subject, key, validity);
+    CertificatePtr certificate = BeginCertificate(*subject, key, validity);
     Must(X509_set_issuer_name(certificate.get(), subject.get()) == 1, "make a certificate");
     AddExtension(*certificate, *certificate, NID_basic_constraints, "critical,CA:TRUE,pathlen:0");
     AddExtension(*certificate, *certificate, NID_key_usage, "critical,digitalSignature,keyCertSign,cRLSign");
@@ -124,7 +104,7 @@ CertificatePtr MakeCertificate(const SubjectName &subject, EVP_PKEY &key, const 
                                const X509 &authority, EVP_PKEY &authorityKey)
 {
     const NamePtr name = subject.Encoded();
-    CertificatePtr certificate = Begin(*name, key, validity);
+    CertificatePtr certificate = BeginCertificate(*name, key, validity);
     Must(X509_set_issuer_name(certificate.get(), X509_get_subject_name(&authority)) == 1,
          "make a certificate");
     AddExtension(*certificate, authority, NID_basic_constraints, "critical,CA:FALSE");
@@ -216,6 +196,11 @@ CertificatePtr ReadCertificate(std::string_view pem, const std::string &file)
     const BioPtr bio = BioOf(pem);
     return Found(CertificatePtr(PEM_read_bio_X509(bio.get(), nullptr, &NoPassphrase, nullptr)), "certificate",
                  file);
+}
+
+CertificatePtr CertificateIn(const std::string &file)
+{
+    return ReadCertificate(ReadFile(file), file);
 }
 
 KeyPtr ReadKey(std::string_view pem, const std::string &file, const AskPassphrase &ask)
@@ -315,7 +300,18 @@ bool AreSame(const X509 &one, const X509 &other)
 
 std::string FleetOf(const X509 &authority)
 {
-    return Field(*X509_get_subject_name(&authority), NID_organizationName);
+    const X509_NAME *name = X509_get_subject_name(&authority);
+    const int at = X509_NAME_get_index_by_NID(name, NID_organizationName, -1);
+    return TextOf(at < 0 ? nullptr : X509_NAME_get_entry(name, at));
+}
+
+std::string TimeText(std::time_t time, const char *format)
+{
+    std::tm parts = {};
+    std::array<char, 32> text{};
+    ::gmtime_r(&time, &parts);
+    std::strftime(text.data(), text.size(), format, &parts);
+    return text.data();
 }
 
 std::string DayText(std::time_t time)

@@ -25,6 +25,9 @@ using AskPassphrase = std::function<Secret(const std::string &file)>;
 
 KeyPtr MakeKey();
 
+// Makes a certificate with a random serial number, without issuer, extensions and signature.
+CertificatePtr BeginCertificate(const X509_NAME &subject, EVP_PKEY &key, const Validity &validity);
+void AddExtension(X509 &certificate, const X509 &authority, int kind, const char *value);
 // Makes a self-signed authority. Its subject is `CN=<name>,O=<fleet>`.
 CertificatePtr MakeAuthority(const std::string &fleet, const std::string &name, EVP_PKEY &key,
                              const Validity &validity);
@@ -44,6 +47,8 @@ std::string PemOf(const X509_CRL &revocations);
 CertificatePtr ReadCertificate(std::string_view pem, const std::string &file);
 // Without `ask`, an encrypted key is refused: at the start of a node no person is there to type.
 KeyPtr ReadKey(std::string_view pem, const std::string &file, const AskPassphrase &ask = {});
+// Reads the file.
+CertificatePtr CertificateIn(const std::string &file);
 RevocationsPtr ReadRevocations(std::string_view pem, const std::string &file);
 
 Validity ValidityOf(const X509 &certificate);
@@ -56,6 +61,8 @@ bool AreSame(const X509 &one, const X509 &other);
 // The fleet that an authority was made for.
 std::string FleetOf(const X509 &authority);
 
+// By a format of strftime, in UTC.
+std::string TimeText(std::time_t time, const char *format);
 // `2026-11-23`, in UTC.
 std::string DayText(std::time_t time);
 // `2026-11-23 12:05 UTC`

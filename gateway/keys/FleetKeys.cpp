@@ -156,8 +156,7 @@ void FleetKeys::FinishRenewals() const
 
 CertificatePtr FleetKeys::Authority(const char *name) const
 {
-    const std::string file = Place(std::string(name) + ".pem");
-    return ReadCertificate(ReadFile(file), file);
+    return CertificateIn(Place(std::string(name) + ".pem"));
 }
 
 EVP_PKEY &FleetKeys::AuthorityKey(const char *name) const
@@ -264,7 +263,7 @@ void FleetKeys::CheckFresh(const std::string &node, const EVP_PKEY &key) const
     const RevocationsPtr revoked = ReadRevocations(ReadFile(place), place);
     for (const std::string &file : Issued())
     {
-        const CertificatePtr certificate = ReadCertificate(ReadFile(file), file);
+        const CertificatePtr certificate = CertificateIn(file);
         if (!IsKeyOf(key, *certificate))
         {
             continue;
@@ -289,8 +288,7 @@ unsigned FleetKeys::NextNumber(const Request &request) const
     SubjectName subject{.Fleet = _fleet, .Number = 0, .Node = request.Node};
     for (const std::string &file : Issued(request.Node))
     {
-        subject.Number =
-            std::max(subject.Number, SubjectOf(*ReadCertificate(ReadFile(file), file)).Number + 1);
+        subject.Number = std::max(subject.Number, SubjectOf(*CertificateIn(file)).Number + 1);
     }
     while (subject.Number <= SubjectName::LargestNumber &&
            HasSmallGuid(subject) != WantsSmallGuid(request.Transport))
@@ -320,7 +318,7 @@ KeyPtr FleetKeys::KeyFor(const std::string &node, const SigningRequest *signing)
     }
     else if (fs::exists(files.Certificate) && !fs::exists(files.PrivateKey))
     {
-        key.reset(X509_get_pubkey(ReadCertificate(ReadFile(files.Certificate), files.Certificate).get()));
+        key.reset(X509_get_pubkey(CertificateIn(files.Certificate).get()));
     }
     if (key)
     {
@@ -334,7 +332,7 @@ void FleetKeys::CheckIsNotKeyOf(const std::vector<std::string> &files, const std
 {
     for (const std::string &file : files)
     {
-        if (IsKeyOf(key, *ReadCertificate(ReadFile(file), file)))
+        if (IsKeyOf(key, *CertificateIn(file)))
         {
             throw KeysError(node +
                             " keeps its key, so revoking the older certificates protects nothing: "
@@ -443,7 +441,7 @@ std::size_t FleetKeys::RevokeFiles(const std::vector<std::string> &files, std::t
     std::vector<const X509 *> revoked;
     for (const std::string &file : files)
     {
-        CertificatePtr certificate = ReadCertificate(ReadFile(file), file);
+        CertificatePtr certificate = CertificateIn(file);
         if (!IsRevoked(*before, *certificate))
         {
             revoked.push_back(certificate.get());
@@ -463,11 +461,9 @@ std::size_t FleetKeys::RevokeFiles(const std::vector<std::string> &files, std::t
 std::size_t FleetKeys::RevokeOlder(const std::string &node, std::time_t now) const
 {
     CheckNodeName(node);
-    const std::string file = NodeFiles(FolderOf(node)).Certificate;
-    const CertificatePtr present = ReadCertificate(ReadFile(file), file);
+    const CertificatePtr present = CertificateIn(NodeFiles(FolderOf(node)).Certificate);
     std::vector<std::string> files = Issued(node);
-    std::erase_if(files, [&](const std::string &one)
-                  { return AreSame(*ReadCertificate(ReadFile(one), one), *present); });
+    std::erase_if(files, [&](const std::string &one) { return AreSame(*CertificateIn(one), *present); });
     CheckIsNotKeyOf(files, node, *X509_get0_pubkey(present.get()));
     return RevokeFiles(files, now);
 }

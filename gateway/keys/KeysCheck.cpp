@@ -1,5 +1,7 @@
 #include "keys/KeysCheck.h"
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <algorithm>
 
 namespace Rabit::Keys
@@ -16,12 +18,7 @@ bool IsPattern(const std::string &name)
 
 std::string List(const std::vector<std::string> &words)
 {
-    std::string text;
-    for (const std::string &word : words)
-    {
-        text += (text.empty() ? "" : ", ") + word;
-    }
-    return text;
+    return boost::algorithm::join(words, ", ");
 }
 
 // True for the permissions of a tool: it reads all topics by one pattern, and writes only the gateways' own.

@@ -58,16 +58,15 @@ NodeKeys::NodeKeys(const std::string &folder, PrivateKeyPlace place)
         throw KeysError("there is no " + _files.Certificate +
                         "; copy the files to it that `rabit keys sign` makes of the node's request");
     }
-    const auto certificateIn = [](const std::string &file) { return ReadCertificate(ReadFile(file), file); };
-    const CertificatePtr identity = certificateIn(_files.IdentityAuthority);
-    const CertificatePtr permissions = certificateIn(_files.PermissionsAuthority);
+    const CertificatePtr identity = CertificateIn(_files.IdentityAuthority);
+    const CertificatePtr permissions = CertificateIn(_files.PermissionsAuthority);
     if (IsKeyOf(*X509_get0_pubkey(identity.get()), *permissions))
     {
         throw KeysError(folder +
                         ": identity and permissions are of one authority, so that a node could sign its own "
                         "permissions; make two");
     }
-    const CertificatePtr certificate = certificateIn(_files.Certificate);
+    const CertificatePtr certificate = CertificateIn(_files.Certificate);
     if (!IsSignedBy(*certificate, *identity))
     {
         throw KeysError(_files.Certificate +
@@ -163,14 +162,9 @@ std::string NodeKeys::WhyNever(const std::string &node, const std::string &trans
                "`: with it, nodes of the other one would not be found; `rabit keys renew` with the "
                "configuration makes one that fits";
     }
-    const bool isInDomain = std::any_of(
-        _permissions.Rules.begin(), _permissions.Rules.end(),
-        [&](const Keys::Permissions::Rule &rule)
-        {
-            return rule.Allows && std::any_of(rule.Domains.begin(), rule.Domains.end(),
-                                              [&](const auto &range)
-                                              { return range.first <= domain && domain <= range.second; });
-        });
+    const bool isInDomain = std::any_of(_permissions.Rules.begin(), _permissions.Rules.end(),
+                                        [domain](const Keys::Permissions::Rule &rule)
+                                        { return rule.Allows && rule.IsIn(domain); });
     return isInDomain ? "" : _files.Permissions + " is not for domain " + std::to_string(domain);
 }
 

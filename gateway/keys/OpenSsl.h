@@ -56,5 +56,7 @@ Result Must(Result &&result, const char *what)
 BioPtr BioOf(std::string_view text);
 BioPtr EmptyBio();
 std::string TextOf(BIO &bio);
+// The text of an entry of a name; empty if there is none.
+std::string TextOf(const X509_NAME_ENTRY *entry);
 
 }  // namespace Rabit::Keys

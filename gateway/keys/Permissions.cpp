@@ -1,10 +1,11 @@
 #include "keys/Permissions.h"
 
 #include <tinyxml2.h>
+#include <boost/algorithm/string/replace.hpp>
+
+#include <fnmatch.h>
 
 #include <algorithm>
-#include <array>
-#include <functional>
 #include <string_view>
 
 #include "keys/KeysError.h"
@@ -20,37 +21,14 @@ using tinyxml2::XMLElement;
 // certificate's own dates are exact.
 constexpr std::time_t Day = 24 * 60 * 60;
 
-std::string TimeText(std::time_t time)
-{
-    std::tm parts = {};
-    std::array<char, 32> text{};
-    ::gmtime_r(&time, &parts);
-    std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%S", &parts);
-    return text.data();
-}
+constexpr const char *TimeFormat = "%Y-%m-%dT%H:%M:%S";
 
-std::string Escaped(std::string_view text)
+std::string Escaped(std::string text)
 {
-    std::string escaped;
-    for (const char c : text)
-    {
-        switch (c)
-        {
-            case '&':
-                escaped += "&amp;";
-                break;
-            case '<':
-                escaped += "&lt;";
-                break;
-            case '>':
-                escaped += "&gt;";
-                break;
-            default:
-                escaped += c;
-                break;
-        }
-    }
-    return escaped;
+    boost::algorithm::replace_all(text, "&", "&amp;");
+    boost::algorithm::replace_all(text, "<", "&lt;");
+    boost::algorithm::replace_all(text, ">", "&gt;");
+    return text;
 }
 
 // Topics with the same partitions share one entry, to keep the document small: every node is shown all of it.
@@ -140,38 +118,10 @@ Permissions::Rule RuleOf(const XMLElement &element, const std::string &file)
     return rule;
 }
 
-// True if the name matches the pattern, in which `*` and `?` are wildcards, as for the vendors. Both vendors
-// know more wildcards, but hand-written permissions with patterns are refused anyway.
-bool Fits(std::string_view pattern, std::string_view name)
+// True if the name matches the pattern. Vendors match alike.
+bool Fits(const std::string &pattern, const std::string &name)
 {
-    std::size_t at = 0;
-    std::size_t in = 0;
-    std::size_t star =
-        std::string_view::npos;  // the last `*` that was passed; it stands for the text up to `upTo`
-    std::size_t upTo = 0;
-    while (in < name.size())
-    {
-        if (at < pattern.size() && pattern[at] == '*')
-        {
-            star = at++;
-            upTo = in;
-        }
-        else if (at < pattern.size() && (pattern[at] == '?' || pattern[at] == name[in]))
-        {
-            ++at;
-            ++in;
-        }
-        else if (star != std::string_view::npos)
-        {
-            at = star + 1;
-            in = ++upTo;
-        }
-        else
-        {
-            return false;
-        }
-    }
-    return pattern.find_first_not_of('*', at) == std::string_view::npos;
+    return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
 }
 
 bool Covers(const TopicAccess &entry, const TopicAccess &access)
@@ -190,12 +140,9 @@ bool IsAllowed(const Permissions &permissions, int domain, const TopicAccess &ac
 {
     for (const Permissions::Rule &rule : permissions.Rules)
     {
-        const bool isInDomain =
-            std::any_of(rule.Domains.begin(), rule.Domains.end(),
-                        [&](const auto &range) { return range.first <= domain && domain <= range.second; });
         const auto &listed = rule.*entries;
-        if (isInDomain && std::any_of(listed.begin(), listed.end(),
-                                      [&](const TopicAccess &entry) { return Covers(entry, access); }))
+        if (rule.IsIn(domain) && std::any_of(listed.begin(), listed.end(),
+                                             [&](const TopicAccess &entry) { return Covers(entry, access); }))
         {
             return rule.Allows;
         }
@@ -204,6 +151,13 @@ bool IsAllowed(const Permissions &permissions, int domain, const TopicAccess &ac
 }
 
 }  // namespace
+
+bool Permissions::Rule::IsIn(int domain) const
+{
+    return std::any_of(Domains.begin(), Domains.end(),
+                       [domain](const auto &range)
+                       { return range.first <= domain && domain <= range.second; });
+}
 
 bool Permissions::MayPublish(int domain, const TopicAccess &access) const
 {
@@ -222,9 +176,9 @@ std::string PermissionsText(const SubjectName &subject, const Validity &validity
                        R"(http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_permissions.xsd">
 <permissions><grant name=")";
     text += subject.Node + "\"><subject_name>" + subject.Text() + "</subject_name>\n<validity><not_before>" +
-            TimeText(validity.From - Day) + "</not_before><not_after>" + TimeText(validity.To + Day) +
-            "</not_after></validity>\n<allow_rule><domains><id>" + std::to_string(access.Domain) +
-            "</id></domains>\n";
+            TimeText(validity.From - Day, TimeFormat) + "</not_before><not_after>" +
+            TimeText(validity.To + Day, TimeFormat) + "</not_after></validity>\n<allow_rule><domains><id>" +
+            std::to_string(access.Domain) + "</id></domains>\n";
     AddEntries("publish", access.Publish, text);
     AddEntries("subscribe", access.Subscribe, text);
     text += "</allow_rule><default>DENY</default></grant></permissions></dds>\n";

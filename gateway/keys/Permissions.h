@@ -21,6 +21,8 @@ struct Permissions
         std::vector<TopicAccess>
             Publish{};  // each topic with the partitions that it is listed with; none: ""
         std::vector<TopicAccess> Subscribe{};
+
+        bool IsIn(int domain) const;
     };
 
     std::string Subject;  // as SubjectName::Text

@@ -1,12 +1,14 @@
 #include "keys/SigningRequest.h"
 
+#include <boost/algorithm/hex.hpp>
+
 #include <openssl/pem.h>
 #include <openssl/sha.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <vector>
 
 #include "keys/Certificates.h"
@@ -51,13 +53,9 @@ bool IsLikeOurs(const EVP_PKEY &key)
 std::string CommonNameOf(const X509_NAME &name)
 {
     const X509_NAME_ENTRY *entry = X509_NAME_get_entry(&name, 0);
-    if (X509_NAME_entry_count(&name) != 1 || OBJ_obj2nid(X509_NAME_ENTRY_get_object(entry)) != NID_commonName)
-    {
-        return {};
-    }
-    const ASN1_STRING *text = X509_NAME_ENTRY_get_data(entry);
-    return {reinterpret_cast<const char *>(ASN1_STRING_get0_data(text)),
-            static_cast<std::size_t>(ASN1_STRING_length(text))};
+    const bool isIt =
+        X509_NAME_entry_count(&name) == 1 && OBJ_obj2nid(X509_NAME_ENTRY_get_object(entry)) == NID_commonName;
+    return TextOf(isIt ? entry : nullptr);
 }
 
 }  // namespace
@@ -121,12 +119,7 @@ std::string FingerprintOf(const EVP_PKEY &key)
     std::array<unsigned char, SHA256_DIGEST_LENGTH> hash{};
     SHA256(encoded.data(), encoded.size(), hash.data());
     std::string text;
-    for (const unsigned char byte : hash)
-    {
-        std::array<char, 3> digits{};
-        std::snprintf(digits.data(), digits.size(), "%02x", static_cast<unsigned>(byte));
-        text += digits.data();
-    }
+    boost::algorithm::hex_lower(hash, std::back_inserter(text));
     return text;
 }
 

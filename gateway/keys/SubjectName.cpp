@@ -26,13 +26,8 @@ void Add(X509_NAME &name, const char *field, const std::string &value)
 std::string FieldOf(const X509_NAME &name, int index, int field)
 {
     const X509_NAME_ENTRY *entry = X509_NAME_get_entry(&name, index);
-    if (entry == nullptr || OBJ_obj2nid(X509_NAME_ENTRY_get_object(entry)) != field)
-    {
-        return {};
-    }
-    const ASN1_STRING *text = X509_NAME_ENTRY_get_data(entry);
-    const auto *bytes = reinterpret_cast<const char *>(ASN1_STRING_get0_data(text));
-    return {bytes, static_cast<std::size_t>(ASN1_STRING_length(text))};
+    const bool isField = entry != nullptr && OBJ_obj2nid(X509_NAME_ENTRY_get_object(entry)) == field;
+    return TextOf(isField ? entry : nullptr);
 }
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <keys/KeysError.h>
 #include <keys/OpenSsl.h>
 
+#include <openssl/crypto.h>
 #include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/x509v3.h>
 
 #include <array>
-#include <cstdio>
 #include <memory>
 
 namespace Ground
@@ -22,27 +22,6 @@ constexpr const char *What = "make a certificate";
 constexpr std::time_t DayS = 24 * 60 * 60;
 // Some browsers refuse certificates with a longer validity.
 constexpr std::time_t LongestDays = 397;
-
-void AddExtension(X509 &certificate, int kind, const std::string &value)
-{
-    using ExtensionPtr = std::unique_ptr<X509_EXTENSION, Keys::FreedBy<&X509_EXTENSION_free>>;
-    X509V3_CTX context;
-    X509V3_set_ctx(&context, &certificate, &certificate, nullptr, nullptr, 0);
-    const ExtensionPtr extension =
-        Keys::Must(ExtensionPtr(X509V3_EXT_conf_nid(nullptr, &context, kind, value.c_str())), What);
-    Keys::Must(X509_add_ext(&certificate, extension.get(), -1) == 1, What);
-}
-
-void SetSerial(X509 &certificate)
-{
-    constexpr int bits = 127;
-    using NumberPtr = std::unique_ptr<BIGNUM, Keys::FreedBy<&BN_free>>;
-    const NumberPtr number = Keys::Must(NumberPtr(BN_new()), What);
-    Keys::Must(BN_rand(number.get(), bits, BN_RAND_TOP_ONE, BN_RAND_BOTTOM_ANY) == 1, What);
-    const Keys::IntegerPtr serial =
-        Keys::Must(Keys::IntegerPtr(BN_to_ASN1_INTEGER(number.get(), nullptr)), What);
-    Keys::Must(X509_set_serialNumber(&certificate, serial.get()) == 1, What);
-}
 
 // Each as `DNS:ground` or `IP:10.0.0.5`.
 std::string AlternativesOf(const WebNames &names)
@@ -63,25 +42,19 @@ std::string MakeWebKey()
 
 std::string MakeWebCertificate(const std::string &key, const WebNames &names, std::time_t now)
 {
-    constexpr long version3 = 2;
     const Keys::KeyPtr pair = Keys::ReadKey(key, "the key of the web page");
-    const Keys::CertificatePtr certificate = Keys::Must(Keys::CertificatePtr(X509_new()), What);
-    X509 &made = *certificate;
-    SetSerial(made);
-    X509_NAME *const name = X509_get_subject_name(&made);
+    const Keys::NamePtr name = Keys::Must(Keys::NamePtr(X509_NAME_new()), What);
     const auto *const common = reinterpret_cast<const unsigned char *>("Rabit ground station");
-    const bool done = X509_set_version(&made, version3) == 1 &&
-                      ASN1_TIME_set(X509_getm_notBefore(&made), now - DayS) != nullptr &&
-                      ASN1_TIME_set(X509_getm_notAfter(&made), now + (LongestDays - 1) * DayS) != nullptr &&
-                      X509_set_pubkey(&made, pair.get()) == 1 &&
-                      X509_NAME_add_entry_by_txt(name, "CN", V_ASN1_UTF8STRING, common, -1, -1, 0) == 1 &&
-                      X509_set_issuer_name(&made, name) == 1;
-    Keys::Must(done, What);
-    AddExtension(made, NID_basic_constraints, "critical,CA:FALSE");
-    AddExtension(made, NID_key_usage, "critical,digitalSignature");
-    AddExtension(made, NID_ext_key_usage, "serverAuth");
+    Keys::Must(X509_NAME_add_entry_by_txt(name.get(), "CN", V_ASN1_UTF8STRING, common, -1, -1, 0) == 1, What);
+    const Keys::CertificatePtr certificate =
+        Keys::BeginCertificate(*name, *pair, {now - DayS, now + (LongestDays - 1) * DayS});
+    X509 &made = *certificate;
+    Keys::Must(X509_set_issuer_name(&made, name.get()) == 1, What);
+    Keys::AddExtension(made, made, NID_basic_constraints, "critical,CA:FALSE");
+    Keys::AddExtension(made, made, NID_key_usage, "critical,digitalSignature");
+    Keys::AddExtension(made, made, NID_ext_key_usage, "serverAuth");
     if (const std::string alternatives = AlternativesOf(names); !alternatives.empty())
-        AddExtension(made, NID_subject_alt_name, alternatives);
+        Keys::AddExtension(made, made, NID_subject_alt_name, alternatives.c_str());
     Keys::Must(X509_sign(&made, pair.get(), EVP_sha256()) > 0, What);
     return Keys::PemOf(made);
 }
@@ -109,15 +82,11 @@ std::string FingerprintOf(const std::string &certificate)
     std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
     unsigned size = 0;
     Keys::Must(X509_digest(read.get(), EVP_sha256(), digest.data(), &size) == 1, "hash a certificate");
-    std::string text;
-    for (unsigned i = 0; i < size; ++i)
-    {
-        std::array<char, 4> octet{};
-        std::snprintf(octet.data(), octet.size(), "%02X", static_cast<unsigned>(digest[i]));
-        if (!text.empty())
-            text += ':';
-        text += octet.data();
-    }
+    std::string text(3 * std::size_t{size}, '\0');
+    std::size_t length = 0;
+    Keys::Must(OPENSSL_buf2hexstr_ex(text.data(), text.size(), &length, digest.data(), size, ':') == 1,
+               "write a hash");
+    text.resize(length - 1);  // without the zero behind it
     return text;
 }
 

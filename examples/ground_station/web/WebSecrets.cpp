@@ -8,11 +8,13 @@
 
 #include <openssl/rand.h>
 
+#include <boost/algorithm/hex.hpp>
 #include <boost/algorithm/string/trim.hpp>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <iterator>
 
 namespace Ground
 {
@@ -43,15 +45,10 @@ void CheckToken(const std::string &token, const std::string &file)
 
 std::string MakeWebToken()
 {
-    constexpr std::string_view digits = "0123456789abcdef";
     std::array<unsigned char, 16> octets{};
     Keys::Must(RAND_bytes(octets.data(), static_cast<int>(octets.size())) == 1, "make a token");
     std::string token;
-    for (const unsigned char octet : octets)
-    {
-        token += digits[octet >> 4U];
-        token += digits[octet & 15U];
-    }
+    boost::algorithm::hex_lower(octets, std::back_inserter(token));
     return token;
 }
 

@@ -1,5 +1,7 @@
 #include "recording/merge/AgePlot.h"
 
+#include <boost/algorithm/string/replace.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -36,28 +38,14 @@ std::string Number(double value)
 }
 
 // Escapes XML, and replaces all but printable ASCII by `?`: texts of a file may hold anything.
-std::string Escaped(const std::string &text)
+std::string Escaped(std::string text)
 {
-    std::string escaped;
-    for (const char letter : text)
-    {
-        switch (letter)
-        {
-            case '&':
-                escaped += "&amp;";
-                break;
-            case '<':
-                escaped += "&lt;";
-                break;
-            case '>':
-                escaped += "&gt;";
-                break;
-            default:
-                escaped += letter >= ' ' && letter <= '~' ? letter : '?';
-                break;
-        }
-    }
-    return escaped;
+    std::replace_if(
+        text.begin(), text.end(), [](char letter) { return letter < ' ' || letter > '~'; }, '?');
+    boost::algorithm::replace_all(text, "&", "&amp;");
+    boost::algorithm::replace_all(text, "<", "&lt;");
+    boost::algorithm::replace_all(text, ">", "&gt;");
+    return text;
 }
 
 // Returns a colour that no other number has. After the first ones the hues follow by the golden angle, which
