@@ -59,8 +59,7 @@ void ReadSubscribed(const YamlMap &entry, ForeignRule &rule)
     entry.Require("as");
     entry.Read("subscribe", rule.Topic);
     entry.Read("as", rule.Local);
-    rule.Each = entry.ReadChoice("each", {"latest", "queue"}) == 1 ? ForeignRule::Delivery::Queue
-                                                                   : ForeignRule::Delivery::Latest;
+    entry.Read("each", {"latest", "queue"}, rule.Each);
     entry.Read("stale_after", rule.StaleAfter);
     rule.SourceTimeIsTrusted = entry.ReadChoice("age", {"arrival", "source_time"}) == 1;
     entry.Read("capacity", rule.Capacity, 1, 1'000'000);
@@ -92,8 +91,7 @@ void ReadForeign(const YamlMap &map, GatewayConfig &config)
         }
         entry.Require("type");
         entry.Read("type", rule.Type);
-        rule.Names = entry.ReadChoice("names", {"plain", "ros2"}) == 1 ? ForeignRule::WireNames::Ros2
-                                                                       : ForeignRule::WireNames::Plain;
+        entry.Read("names", {"plain", "ros2"}, rule.Names);
         if (entry.Has("subscribe"))
         {
             ReadSubscribed(entry, rule);

@@ -67,43 +67,45 @@ void ReadNetwork(const YamlMap &map, GatewayConfig &config)
     map.Read("state_dir", config.StateDir);
 }
 
-// A level's index in the list is its value.
-const std::vector<std::string> LevelNames = {"sign", "encrypt"};
+// A section; empty if it is missing. The lines of its keys are noted as `place.key`.
+std::optional<YamlMap> Section(const YamlMap &map, const std::string &key,
+                               const std::vector<std::string> &keys, const std::string &place,
+                               GatewayConfig &config)
+{
+    auto section = map.Map(key, "the section `" + key + "`", keys);
+    for (const auto &[name, line] : section ? section->Lines() : std::map<std::string, int>())
+    {
+        config.Lines[place + "." + name] = line;
+    }
+    return section;
+}
 
 void ReadSecurity(const YamlMap &map, GatewayConfig &config)
 {
-    if (const auto security = map.Map("security", "the section `security`", {"keys", "level"}))
+    if (const auto security = Section(map, "security", {"keys", "level"}, "security", config))
     {
         security->Require("keys");
         SecuritySettings &settings = config.Security.emplace();
         security->Read("keys", settings.Keys);
-        const int level = security->ReadChoice("level", LevelNames);
-        settings.Level = level < 0 ? settings.Level : static_cast<SecurityLevel>(level);
-        for (const auto &[key, line] : security->Lines())
-        {
-            config.Lines["security." + key] = line;
-        }
+        security->Read("level", {"sign", "encrypt"}, settings.Level);
     }
 }
 
 void ReadRadio(const YamlMap &map, GatewayConfig &config)
 {
-    if (const auto radio = map.Map("radio", "the section `radio`", {"budget", "slowest_beat"}))
+    if (const auto radio = Section(map, "radio", {"budget", "slowest_beat"}, "radio", config))
     {
         radio->ReadByteRate("budget", config.Radio.Budget);
         radio->Read("slowest_beat", config.Radio.SlowestBeat);
-        for (const auto &[key, line] : radio->Lines())
-        {
-            config.Lines["radio." + key] = line;
-        }
     }
 }
 
 void ReadRecord(const YamlMap &map, GatewayConfig &config)
 {
-    const auto record = map.Map("record", "the section `record`",
+    const auto record = Section(map, "record",
                                 {"folder", "messages", "except", "queues", "steps", "split_size",
-                                 "split_time", "keep", "free", "memory", "black_box"});
+                                 "split_time", "keep", "free", "memory", "black_box"},
+                                "record", config);
     if (!record)
     {
         return;
@@ -121,12 +123,9 @@ void ReadRecord(const YamlMap &map, GatewayConfig &config)
     record->ReadByteSize("keep", settings.Keep, RecordRanges::Keep);
     record->ReadByteSize("free", settings.Free, RecordRanges::Free);
     record->ReadByteSize("memory", settings.Memory, RecordRanges::Memory);
-    for (const auto &[key, line] : record->Lines())
-    {
-        config.Lines["record." + key] = line;
-    }
-    if (const auto box = record->Map("black_box", "the section `black_box`",
-                                     {"before", "after", "messages", "queues", "outcomes", "problems"}))
+    if (const auto box =
+            Section(*record, "black_box", {"before", "after", "messages", "queues", "outcomes", "problems"},
+                    "record.black_box", config))
     {
         BlackBoxSettings &black = settings.BlackBox.emplace();
         box->Read("before", black.Before);
@@ -135,10 +134,6 @@ void ReadRecord(const YamlMap &map, GatewayConfig &config)
         box->Read("queues", black.Queues);
         box->Read("outcomes", black.Outcomes);
         box->Read("problems", black.Problems);
-        for (const auto &[key, line] : box->Lines())
-        {
-            config.Lines["record.black_box." + key] = line;
-        }
     }
     config.Record = settings;
 }
@@ -163,8 +158,7 @@ void ReadPublish(const YamlMap &map, GatewayConfig &config)
         entry.Read("max_rate", rule.MaxRate);
         rule.Class = ReadClass(entry);
         entry.Read("weight", rule.Weight);
-        const int qos = entry.ReadChoice("qos", QosProfileWords);
-        rule.Qos = qos < 0 ? rule.Qos : static_cast<QosProfile>(qos);
+        entry.Read("qos", QosProfileWords, rule.Qos);
         config.Publish.push_back(rule);
     }
 }
@@ -181,11 +175,7 @@ void ReadSubscribe(const YamlMap &map, GatewayConfig &config)
         entry.Read("message", rule.Message);
         entry.Read("type", rule.Type);
         entry.Read("from", rule.From);
-        const int qos = entry.ReadChoice("qos", QosProfileWords);
-        if (qos >= 0)
-        {
-            rule.Qos = static_cast<QosProfile>(qos);
-        }
+        entry.Read<std::optional<QosProfile>, QosProfile>("qos", QosProfileWords, rule.Qos);
         config.Subscribe.push_back(rule);
     }
 }

@@ -158,7 +158,8 @@ void YamlMap::Read(const std::string &key, double &value) const
     }
 }
 
-void YamlMap::Read(const std::string &key, int &value, int least, int most) const
+template <typename Number>
+void YamlMap::ReadWhole(const std::string &key, Number &value, Number least, Number most) const
 {
     if (const YAML::Node *node = Find(key))
     {
@@ -171,17 +172,14 @@ void YamlMap::Read(const std::string &key, int &value, int least, int most) cons
     }
 }
 
+void YamlMap::Read(const std::string &key, int &value, int least, int most) const
+{
+    ReadWhole(key, value, least, most);
+}
+
 void YamlMap::Read(const std::string &key, std::size_t &value, std::size_t least, std::size_t most) const
 {
-    if (const YAML::Node *node = Find(key))
-    {
-        const std::string &text = Scalar(*node, key, "a whole number");
-        if (!ParseWhole(text, value) || value < least || value > most)
-        {
-            Fail(LineOf(*node), "`" + key + "` is `" + text + "`; expected a whole number from " +
-                                    std::to_string(least) + " to " + std::to_string(most));
-        }
-    }
+    ReadWhole(key, value, least, most);
 }
 
 void YamlMap::Read(const std::string &key, std::chrono::milliseconds &value) const

@@ -53,6 +53,15 @@ public:
     void Read(const std::string &key, std::vector<std::string> &value) const;
     // Reads one of the words. Returns its index, or -1 if the key is missing.
     int ReadChoice(const std::string &key, const std::vector<std::string> &choices) const;
+    // Reads an enumeration, perhaps into an optional; the index of a word is its value.
+    template <typename Value, typename Enumeration = Value>
+    void Read(const std::string &key, const std::vector<std::string> &words, Value &value) const
+    {
+        if (const int choice = ReadChoice(key, words); choice >= 0)
+        {
+            value = static_cast<Enumeration>(choice);
+        }
+    }
     // A mapping; empty if the key is missing.
     std::optional<YamlMap> Map(const std::string &key, const std::string &what,
                                const std::vector<std::string> &allowedKeys) const;
@@ -68,6 +77,8 @@ private:
     YamlMap(std::string file, const YAML::Node &node, std::string what,
             const std::vector<std::string> *allowedKeys);
     const YAML::Node *Find(const std::string &key) const;
+    template <typename Number>
+    void ReadWhole(const std::string &key, Number &value, Number least, Number most) const;
     const std::string &Scalar(const YAML::Node &node, const std::string &key, const char *expected) const;
 
     std::string _file;
