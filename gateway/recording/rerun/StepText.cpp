@@ -1,10 +1,14 @@
 #include "recording/rerun/StepText.h"
 
+#include <boost/algorithm/hex.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
+#include <iterator>
+#include <stdexcept>
 
 namespace Rabit::Rerun
 {
@@ -19,91 +23,36 @@ constexpr std::array StepWords = {"startup", "unit of work", "shutdown"};
 constexpr std::array KindWords = {"monotonic", "gps_time", "fetched", "posted",
                                   "taken",     "added",    "refused", "listed"};
 
-std::string HexOf(const std::vector<std::uint8_t> &bytes)
-{
-    constexpr std::string_view digits = "0123456789abcdef";
-    std::string text;
-    text.reserve(2 * bytes.size());
-    for (const std::uint8_t byte : bytes)
-    {
-        text += digits[byte >> 4];
-        text += digits[byte & 15];
-    }
-    return text;
-}
-
-bool ReadHex(const std::string &text, std::vector<std::uint8_t> &bytes)
-{
-    bytes.resize(text.size() / 2);
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-    {
-        const char *const digits = text.data() + 2 * i;
-        if (std::from_chars(digits, digits + 2, bytes[i], 16).ptr != digits + 2)
-        {
-            return false;
-        }
-    }
-    return text.size() % 2 == 0;
-}
+// What reads throws an exception if the text is not of that kind.
 
 template <typename Number>
-bool ReadNumber(const Json &json, const char *key, Number &number)
+Number NumberIn(const Json &json)
 {
-    const auto found = json.find(key);
-    if (found == json.end() || !found->is_string())
-    {
-        return false;
-    }
-    const auto &text = found->get_ref<const std::string &>();
+    const auto &text = json.get_ref<const std::string &>();
+    Number number{};
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc() && end == text.data() + text.size();
-}
-
-bool ReadTime(const Json &json, std::chrono::nanoseconds &time)
-{
-    std::int64_t count = 0;
-    const bool good = ReadNumber(json, "monotonic_ns", count);
-    time = std::chrono::nanoseconds(count);
-    return good;
-}
-
-bool Read(const Json &json, const char *key, double &number)
-{
-    const auto found = json.find(key);
-    const bool good = found != json.end() && found->is_number();
-    number = good ? found->get<double>() : 0;
-    return good;
-}
-
-bool Read(const Json &json, const char *key, std::string &text)
-{
-    const auto found = json.find(key);
-    const bool good = found != json.end() && found->is_string();
-    text = good ? found->get<std::string>() : "";
-    return good;
-}
-
-// Returns false if the key is missing.
-bool Flag(const Json &json, const char *key)
-{
-    const auto found = json.find(key);
-    return found != json.end() && found->is_boolean() && found->get<bool>();
-}
-
-template <std::size_t Count>
-std::optional<std::size_t> WordIn(const std::array<const char *, Count> &words, const Json &json,
-                                  const char *key)
-{
-    std::string word;
-    Read(json, key, word);
-    for (std::size_t i = 0; i < Count; ++i)
+    if (error != std::errc() || end != text.data() + text.size())
     {
-        if (word == words[i])
-        {
-            return i;
-        }
+        throw std::invalid_argument("not a number");
     }
-    return std::nullopt;
+    return number;
+}
+
+std::chrono::nanoseconds TimeIn(const Json &json)
+{
+    return std::chrono::nanoseconds(NumberIn<std::int64_t>(json));
+}
+
+// Returns the value of that name, whose index is the same.
+template <typename Value, std::size_t Count>
+Value ValueIn(const Json &json, const std::array<const char *, Count> &words)
+{
+    const auto found = std::find(words.begin(), words.end(), json.get_ref<const std::string &>());
+    if (found == words.end())
+    {
+        throw std::invalid_argument("not one of the words");
+    }
+    return static_cast<Value>(found - words.begin());
 }
 
 Json JsonOf(const StepEvent &event)
@@ -147,58 +96,47 @@ Json JsonOf(const StepEvent &event)
     {
         json["redelivered"] = true;
     }
-    json["sample"] = HexOf(event.Sample);
+    std::string sample;
+    boost::algorithm::hex_lower(event.Sample, std::back_inserter(sample));
+    json["sample"] = std::move(sample);
     return json;
 }
 
-bool ReadNames(const Json &json, StepEvent &event)
+StepEvent EventIn(const Json &json)
 {
-    const auto names = json.find("names");
-    if (names == json.end() || !names->is_array())
-    {
-        return false;
-    }
-    for (const Json &one : *names)
-    {
-        auto &[name, type] = event.Names.emplace_back();
-        if (!one.is_object() || !Read(one, "name", name) || !Read(one, "type", type))
-        {
-            return false;
-        }
-    }
-    return true;
-}
-
-bool ReadEvent(const Json &json, StepEvent &event)
-{
-    const auto kind = json.is_object() ? WordIn(KindWords, json, "what") : std::nullopt;
-    if (!kind)
-    {
-        return false;
-    }
-    event.What = static_cast<Kind>(*kind);
+    StepEvent event;
+    event.What = ValueIn<Kind>(json.at("what"), KindWords);
     switch (event.What)
     {
         case Kind::Monotonic:
-            return ReadTime(json, event.Monotonic);
+            event.Monotonic = TimeIn(json.at("monotonic_ns"));
+            return event;
         case Kind::GpsTime:
-            return Read(json, "gps_time_s", event.GpsTime);
+            event.GpsTime = json.at("gps_time_s").get<double>();
+            return event;
         case Kind::Listed:
-            return ReadNames(json, event);
+            for (const Json &one : json.at("names").get_ref<const Json::array_t &>())
+            {
+                event.Names.emplace_back(one.at("name"), one.at("type"));
+            }
+            return event;
+        case Kind::Fetched:
+        case Kind::Posted:
+            event.Number = NumberIn<std::uint64_t>(json.at("number"));
+            break;
         default:
             break;
     }
-    const bool isPost = event.What == Kind::Fetched || event.What == Kind::Posted;
-    if (isPost && !ReadNumber(json, "number", event.Number))
-    {
-        return false;
-    }
-    Read(json, "gps_time_s", event.GpsTime);
-    event.WasPosted = ReadTime(json, event.Monotonic);
-    event.IsRedelivered = Flag(json, "redelivered");
-    std::string sample;
-    return Read(json, "name", event.Name) && Read(json, "type", event.Type) && Read(json, "sample", sample) &&
-           ReadHex(sample, event.Sample);
+    const Json gpsTime = json.value("gps_time_s", Json());
+    event.GpsTime = gpsTime.is_number() ? gpsTime.get<double>() : 0;  // null: it was not finite
+    event.WasPosted = json.contains("monotonic_ns");
+    event.Monotonic = event.WasPosted ? TimeIn(json["monotonic_ns"]) : event.Monotonic;
+    event.IsRedelivered = json.value("redelivered", false);
+    event.Name = json.at("name");
+    event.Type = json.at("type");
+    boost::algorithm::unhex(json.at("sample").get_ref<const std::string &>(),
+                            std::back_inserter(event.Sample));
+    return event;
 }
 
 }  // namespace
@@ -222,30 +160,26 @@ std::string TextOf(const ManagerStep &step)
 
 std::optional<ManagerStep> StepOf(std::string_view text)
 {
-    const Json json = Json::parse(text.begin(), text.end(), nullptr, false);
-    const auto what = json.is_object() ? WordIn(StepWords, json, "step") : std::nullopt;
-    ManagerStep step;
-    if (!what || !ReadNumber(json, "number", step.Number) || !ReadTime(json, step.Began) ||
-        !Read(json, "gps_time_s", step.BeganGpsTime))
+    try
     {
-        return std::nullopt;
-    }
-    step.What = static_cast<Step>(*what);
-    step.IsTurn = Flag(json, "turn");
-    step.Threw = Flag(json, "threw");
-    const auto events = json.find("events");
-    if (events == json.end() || !events->is_array())
-    {
-        return std::nullopt;
-    }
-    for (const Json &event : *events)
-    {
-        if (!ReadEvent(event, step.Events.emplace_back()))
+        const Json json = Json::parse(text);
+        ManagerStep step;
+        step.What = ValueIn<Step>(json.at("step"), StepWords);
+        step.Number = NumberIn<std::uint64_t>(json.at("number"));
+        step.Began = TimeIn(json.at("monotonic_ns"));
+        step.BeganGpsTime = json.at("gps_time_s").get<double>();
+        step.IsTurn = json.value("turn", false);
+        step.Threw = json.value("threw", false);
+        for (const Json &event : json.at("events").get_ref<const Json::array_t &>())
         {
-            return std::nullopt;
+            step.Events.push_back(EventIn(event));
         }
+        return step;
     }
-    return step;
+    catch (const std::exception &)
+    {
+        return std::nullopt;
+    }
 }
 
 const char *StepSchema()
