@@ -1,6 +1,7 @@
 #pragma once
 
-#include <algorithm>
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <optional>
 
@@ -27,7 +28,7 @@ public:
     {
         if (_lastAsked && now - *_lastAsked >= Quiet)
         {
-            _gap = ShortestGap;
+            _gap.Reset();
         }
         _lastAsked = now;
         _waits |= _lastWritten && now - *_lastWritten >= ShortestGap;
@@ -36,7 +37,7 @@ public:
     // The value was written, for the first time or again.
     void Written(bool isNew, Duration now)
     {
-        _gap = isNew ? ShortestGap : std::min(2 * _gap, LongestGap);
+        isNew ? _gap.Reset() : static_cast<void>(_gap.Next());
         _lastWritten = now;
         _waits = false;
     }
@@ -44,11 +45,11 @@ public:
     // When the value is to be written again; empty: no node waits for it.
     std::optional<Duration> Due() const
     {
-        return _waits ? std::optional(*_lastWritten + _gap) : std::nullopt;
+        return _waits ? std::optional(*_lastWritten + _gap.Interval()) : std::nullopt;
     }
 
 private:
-    Duration _gap = ShortestGap;
+    Backoff _gap{{ShortestGap, LongestGap}};
     std::optional<Duration> _lastAsked;
     std::optional<Duration> _lastWritten;
     bool _waits = false;

@@ -1,5 +1,7 @@
 #include "mirrors/StateRepair.h"
 
+#include <rabit/base/Earliest.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -69,8 +71,7 @@ bool StateRepair::Has(const std::string &name, const Node &node, const Entry &en
 
 void StateRepair::Settle(Node &node, Entry &entry)
 {
-    entry.LackingDue.reset();
-    entry.Wait = Duration(0);
+    entry.Request.Stop();
     node.Changed |= entry.Asked;
     entry.Asked = false;
 }
@@ -114,10 +115,9 @@ void StateRepair::LookAt(const std::string &name, Node &node, Entry &entry, std:
     {
         Settle(node, entry);
     }
-    else if (!entry.LackingDue)
+    else if (!entry.Request.Due())
     {
-        entry.Wait = AskAfter;
-        entry.LackingDue = now + (entry.Judged ? AskAfter : Duration(0)) + Spread(others);
+        entry.Request.Begin(now + (entry.Judged ? AskAfter : Duration(0)) + Spread(others));
     }
 }
 
@@ -141,15 +141,14 @@ bool StateRepair::Ripen(const std::string &name, Node &node, Duration now)
     bool any = false;
     for (Entry &entry : node.Entries)
     {
-        if (entry.LackingDue && Has(name, node, entry))
+        if (entry.Request.Due() && Has(name, node, entry))
         {
             Settle(node, entry);
         }
-        else if (entry.LackingDue && now >= *entry.LackingDue)
+        else if (entry.Request.IsDue(now))
         {
             entry.Asked = true;
-            entry.Wait = std::min(2 * entry.Wait, LongestWait);
-            entry.LackingDue = now + std::max(entry.Wait, node.RoundTrip + AskAfter);
+            entry.Request.Done(now, node.RoundTrip + AskAfter);
             any = true;
         }
     }
@@ -207,10 +206,7 @@ void StateRepair::Reschedule(const std::string &name, Node &node)
     for (const Entry &entry : node.Entries)
     {
         asked |= entry.Asked;
-        if (entry.LackingDue && (!due || *entry.LackingDue < *due))
-        {
-            due = entry.LackingDue;
-        }
+        due = Earliest({due, entry.Request.Due()});
     }
     if (due != node.Due)
     {

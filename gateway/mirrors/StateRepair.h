@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
 #include <rabit/gateway/RandomSource.h>
 
 #include <chrono>
@@ -97,12 +98,11 @@ private:
     struct Entry
     {
         Wanted What;
-        bool Judged = false;                 // compared at least once in this incarnation
-        std::int64_t Stated = 0;             // the latest source time of the announced version
-        std::optional<Duration> LackingDue;  // when it is requested (again); empty: it is there, or its node
-                                             // is LOST
-        Duration Wait{0};                    // the last one
-        bool Asked = false;                  // in the beats
+        bool Judged = false;      // compared at least once in this incarnation
+        std::int64_t Stated = 0;  // the latest source time of the announced version
+        // When it is requested (again); not due: it is there, or its node is LOST.
+        BackoffTimer<Duration> Request{{2 * AskAfter, LongestWait}};
+        bool Asked = false;  // in the beats
     };
 
     struct Node

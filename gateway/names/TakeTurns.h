@@ -1,5 +1,8 @@
 #pragma once
 
+#include <rabit/base/Earliest.h>
+
+#include <algorithm>
 #include <cstddef>
 
 namespace Rabit
@@ -24,6 +27,27 @@ void TakeTurns(Map &map, typename Map::key_type &last, std::size_t most, const T
             ++taken;
         }
     }
+}
+
+// For a map of entries with a BackoffTimer `Ask`: when the next question is due, and the number of questions
+// that are due, at most `most`.
+template <typename Map>
+auto NextAsk(const Map &map)
+{
+    decltype(map.begin()->second.Ask.Due()) next;
+    for (const auto &[key, entry] : map)
+    {
+        next = Earliest({next, entry.Ask.Due()});
+    }
+    return next;
+}
+
+template <typename Map, typename Time>
+std::size_t CountAsks(const Map &map, Time now, std::size_t most)
+{
+    const auto due = std::count_if(map.begin(), map.end(),
+                                   [now](const auto &entry) { return entry.second.Ask.IsDue(now); });
+    return std::min(static_cast<std::size_t>(due), most);
 }
 
 }  // namespace Rabit

@@ -1,7 +1,5 @@
 #include "presence/MissingOffers.h"
 
-#include <algorithm>
-
 #include "names/TakeTurns.h"
 
 namespace Rabit
@@ -9,10 +7,10 @@ namespace Rabit
 
 void MissingOffers::Lacks(const std::string &node, std::uint32_t digest, Duration now)
 {
-    const auto [found, isNew] = _lacking.try_emplace(node);
+    const auto [found, isNew] = _lacking.try_emplace(node, _gaps);
     if (isNew)
     {
-        found->second.AskAt = now + AskAfter;
+        found->second.Ask.Begin(now + AskAfter);
     }
     found->second.Digest = digest;
 }
@@ -41,19 +39,12 @@ std::optional<std::vector<std::uint8_t>> MissingOffers::Add(const std::string &n
 
 std::optional<MissingOffers::Duration> MissingOffers::NextDue() const
 {
-    std::optional<Duration> next;
-    for (const auto &[node, entry] : _lacking)
-    {
-        next = std::min(next.value_or(entry.AskAt), entry.AskAt);
-    }
-    return next;
+    return NextAsk(_lacking);
 }
 
 std::size_t MissingOffers::Due(Duration now, std::size_t most) const
 {
-    const auto due = std::count_if(_lacking.begin(), _lacking.end(),
-                                   [now](const auto &entry) { return entry.second.AskAt <= now; });
-    return std::min(static_cast<std::size_t>(due), most);
+    return CountAsks(_lacking, now, most);
 }
 
 std::vector<MissingOffers::Question> MissingOffers::Take(Duration now, std::size_t most, Duration delay)
@@ -62,14 +53,12 @@ std::vector<MissingOffers::Question> MissingOffers::Take(Duration now, std::size
     TakeTurns(_lacking, _lastAsked, most,
               [&](const std::string &node, Entry &entry)
               {
-                  if (entry.AskAt > now)
+                  if (!entry.Ask.IsDue(now))
                   {
                       return false;
                   }
                   questions.push_back({node, entry.Collected.FirstLacking(entry.Digest)});
-                  entry.AskAt = now + std::max(entry.Gap, 2 * delay);
-                  const bool quick = ++entry.Asked < _quickQuestions;
-                  entry.Gap = std::min(entry.Gap * 3 / 2, quick ? _quickGap : LongestGap);
+                  entry.Ask.Done(now, 2 * delay);
                   return true;
               });
     return questions;

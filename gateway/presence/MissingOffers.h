@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -37,8 +39,8 @@ public:
     // which looks and goes.
     void BeQuick(Duration gap, int questions)
     {
-        _quickGap = gap;
-        _quickQuestions = questions;
+        _gaps.Quick = gap;
+        _gaps.QuickSteps = questions;
     }
 
     // The node's beats name an announcement with that digest, which this node lacks.
@@ -68,17 +70,16 @@ public:
 private:
     struct Entry
     {
+        explicit Entry(const Backoff::Settings &gaps) : Ask(gaps) {}
+
         std::uint32_t Digest = 0;
-        Duration AskAt{0};
-        Duration Gap = 2 * AskAfter;
-        int Asked = 0;
+        BackoffTimer<Duration> Ask;
         OffersCollector Collected;
     };
 
     std::map<std::string, Entry> _lacking;
     std::string _lastAsked;
-    Duration _quickGap = QuickGap;
-    int _quickQuestions = QuickQuestions;
+    Backoff::Settings _gaps{2 * AskAfter, LongestGap, 1.5, 0, QuickQuestions, QuickGap};
     std::uint64_t _wrong = 0;
 };
 

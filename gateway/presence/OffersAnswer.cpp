@@ -38,8 +38,7 @@ void OffersAnswer::Asked(std::size_t from, std::size_t others, Duration now,
     }
     if (!_lastAsked || now - *_lastAsked >= Quiet)
     {
-        _gap = ShortestGap;
-        _answers = 0;
+        _gap.Reset();
     }
     _lastAsked = now;
     if (!_from && _crossedUntil && now < *_crossedUntil)
@@ -82,9 +81,9 @@ void OffersAnswer::Said(std::size_t bytes, Duration now, Duration delay)
     if (*_from >= _size)
     {
         _crossedUntil = now + std::max(ShortestGap, 2 * delay);
-        _notBefore = now + _gap * _parts;
-        _notBeforeForNew = now + std::min(_gap, NewAskerGap) * std::exchange(_parts, 0);
-        _gap = std::min(2 * _gap, ++_answers < QuickAnswers ? QuickGap : LongestGap);
+        const Duration gap = _gap.Next();
+        _notBefore = now + gap * _parts;
+        _notBeforeForNew = now + std::min(gap, NewAskerGap) * std::exchange(_parts, 0);
         _from = std::exchange(_again, std::nullopt);
         _at = std::exchange(_isAgainForNew, false) ? _notBeforeForNew : _notBefore;
     }

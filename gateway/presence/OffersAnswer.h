@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
 #include <rabit/gateway/RandomSource.h>
 
 #include <chrono>
@@ -66,8 +67,7 @@ private:
     std::optional<std::size_t> _again;  // where to begin again once the end was sent
     bool _isAgainForNew = false;        // the first request of an asker is among those for _again
     Duration _at{0};
-    Duration _gap = ShortestGap;
-    int _answers = 0;  // since the gap was short
+    Backoff _gap{{ShortestGap, LongestGap, 2.0, 0, QuickAnswers, QuickGap}};
     Duration _notBefore{0};
     Duration _notBeforeForNew{0};  // for the first request of an asker
     Duration _spreadUntil{0};      // of the first request since the last time

@@ -87,11 +87,13 @@ void TypeAnswers::Sent(std::size_t bytes, Duration now)
     if (part.First >= part.Text->size())
     {
         Memory &memory = _memory[KeyOf(part.Node, part.Definition)];
-        memory.NotBefore = now + memory.Gap;
+        memory.NotBefore = now + memory.Gap.Next();
         // An answer that is no larger than the question needs no larger interval.
         const auto report = NodeReports::NameIn(part.Definition);
-        const bool isSmall = report && report->What == NodeReports::Kind::Echo;
-        memory.Gap = isSmall ? ShortestGap : std::min(2 * memory.Gap, LongestGap);
+        if (report && report->What == NodeReports::Kind::Echo)
+        {
+            memory.Gap.Reset();
+        }
         _waiting.pop_front();
     }
 }

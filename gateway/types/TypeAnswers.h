@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -72,7 +74,7 @@ private:
     {
         Duration LastAsked{0};
         Duration NotBefore{0};
-        Duration Gap = ShortestGap;
+        Backoff Gap{{ShortestGap, LongestGap}};
     };
 
     const TextOf _textOf;

@@ -58,25 +58,18 @@ bool TypeQuestions::Want(const Wanted &wanted, Duration now)
     entry = {};
     entry.Node = wanted.Node;
     entry.Type = wanted.Type;
-    entry.AskAt = now;
+    entry.Ask.Begin(now);
     return true;
 }
 
 std::optional<TypeQuestions::Duration> TypeQuestions::NextDue() const
 {
-    std::optional<Duration> next;
-    for (const auto &[key, entry] : _wanted)
-    {
-        next = std::min(next.value_or(entry.AskAt), entry.AskAt);
-    }
-    return next;
+    return NextAsk(_wanted);
 }
 
 std::size_t TypeQuestions::Due(Duration now, std::size_t most) const
 {
-    const auto due = std::count_if(_wanted.begin(), _wanted.end(),
-                                   [now](const auto &entry) { return entry.second.AskAt <= now; });
-    return std::min(static_cast<std::size_t>(due), most);
+    return CountAsks(_wanted, now, most);
 }
 
 std::vector<TypeQuestions::Question> TypeQuestions::Take(Duration now, std::size_t most)
@@ -85,15 +78,14 @@ std::vector<TypeQuestions::Question> TypeQuestions::Take(Duration now, std::size
     TakeTurns(_wanted, _lastAsked, most,
               [&](const Key &key, Entry &entry)
               {
-                  if (entry.AskAt > now)
+                  if (!entry.Ask.IsDue(now))
                   {
                       return false;
                   }
                   questions.push_back(
                       {entry.Node, key.first, static_cast<std::uint32_t>(entry.Collected.FirstLacking())});
                   entry.AskedAt = now;
-                  entry.AskAt = IsEcho(key.first) ? Duration::max() : now + entry.Gap;
-                  entry.Gap = std::min(2 * entry.Gap, LongestGap);
+                  IsEcho(key.first) ? entry.Ask.Stop() : entry.Ask.Done(now);
                   return true;
               });
     return questions;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -77,9 +79,8 @@ private:
     {
         std::string Node;
         std::string Type;
-        Duration AskAt{0};
+        BackoffTimer<Duration> Ask{{ShortestGap, LongestGap}};
         Duration AskedAt{0};
-        Duration Gap = ShortestGap;
         PartsCollector Collected;
     };
 

@@ -1,11 +1,11 @@
 #include "rtps/CardExchange.h"
 
 #include <rabit/base/Assert.h>
+#include <rabit/base/Earliest.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "rtps/Earliest.h"
 #include "rtps/PackedCard.h"
 
 namespace Rabit::Rtps
@@ -268,7 +268,7 @@ void CardExchange::Want(std::uint64_t parts, const std::optional<GuidPrefix> &by
         }
         if (now - part.Asked >= Quiet)
         {
-            part.Gap = FirstAnswerGap;
+            part.Gap.Reset();
         }
         part.Asked = now;
         part.By = part.IsWanted && part.By != by ? std::nullopt : by;
@@ -295,7 +295,7 @@ std::optional<CardExchange::TimePoint> CardExchange::PartDue() const
     std::optional<TimePoint> due;
     for (const OwnPart &part : _parts)
     {
-        due = part.IsWanted ? Earliest({due, part.NotBefore}) : due;
+        due = part.IsWanted ? Earliest<TimePoint>({due, part.NotBefore}) : due;
     }
     return due;
 }
@@ -427,7 +427,7 @@ bool CardExchange::IsSummaryDue(TimePoint now) const
 
 void CardExchange::SentSummary(TimePoint now)
 {
-    for (Backoff *const series : {&_summary, &_greeting})
+    for (BackoffTimer<TimePoint> *const series : {&_summary, &_greeting})
     {
         if (series->IsDue(now))
         {
@@ -507,9 +507,7 @@ CardExchange::Outgoing CardExchange::TakePart(TimePoint now)
     part.SentAt = now;
     part.SentTo = part.By ? Only(*part.By) : std::nullopt;
     part.Answers = {};
-    part.NotBefore = now + part.Gap;
-    const double factor = part.By ? GapFactor : CrowdFactor;
-    part.Gap = std::min<Duration>(std::chrono::duration_cast<Duration>(part.Gap * factor), LongestAnswerGap);
+    part.NotBefore = now + part.Gap.Next(part.By ? GapFactor : CrowdFactor);
     return {.To = part.SentTo, .Bytes = WriteCardMessage(message)};
 }
 

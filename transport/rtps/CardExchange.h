@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -8,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "rtps/Backoff.h"
 #include "rtps/CardMessage.h"
 #include "rtps/QueueingDelay.h"
 
@@ -36,7 +37,7 @@ namespace Rabit::Rtps
 class CardExchange
 {
 public:
-    using TimePoint = Backoff::TimePoint;
+    using TimePoint = std::chrono::steady_clock::time_point;
     using Duration = Backoff::Duration;
 
     static constexpr std::chrono::milliseconds FirstRetry{50};
@@ -129,7 +130,7 @@ private:
         CardSummary Wanted;                                      // the card that the peer says it has
         CardSummary Held;                                        // the card that is complete here
         std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted card
-        Backoff Request{{FirstRetry, LongestRetry, GapFactor}};
+        BackoffTimer<TimePoint> Request{{FirstRetry, LongestRetry, GapFactor}};
         bool IsAnnounced = false;  // it has said that it has a card
         bool HasCard = false;      // a message of it has come
         int Asked = 0;             // requests since its last message
@@ -148,7 +149,7 @@ private:
         std::optional<TimePoint> SentAt{};
         std::optional<GuidPrefix> SentTo;  // empty: to all
         AnsweredRequest Answers{};         // its SentAt counts from the request's arrival
-        Duration Gap = FirstAnswerGap;
+        Backoff Gap{{FirstAnswerGap, LongestAnswerGap, CrowdFactor}};
         TimePoint Asked{};
     };
 
@@ -181,8 +182,8 @@ private:
     CardSummary _own;
     std::vector<std::uint8_t> _packed;
     std::vector<OwnPart> _parts;
-    Backoff _summary{{FirstSummary, LongestSummary, SummaryFactor, InitialSummaries}};
-    Backoff _greeting{{FirstSummary, LongestSummary, SummaryFactor, GreetingSummaries}};
+    BackoffTimer<TimePoint> _summary{{FirstSummary, LongestSummary, SummaryFactor, InitialSummaries}};
+    BackoffTimer<TimePoint> _greeting{{FirstSummary, LongestSummary, SummaryFactor, GreetingSummaries}};
     std::optional<TimePoint> _nextPeriod;
     std::map<GuidPrefix, Peer> _peers;
     std::deque<TimePoint> _unknown;  // when participants that may have no card were asked first

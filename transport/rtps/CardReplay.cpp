@@ -1,5 +1,7 @@
 #include "rtps/CardReplay.h"
 
+#include <rabit/base/Earliest.h>
+
 #include <algorithm>
 #include <array>
 #include <utility>

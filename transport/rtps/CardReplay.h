@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -8,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "rtps/Backoff.h"
 #include "rtps/OwnCard.h"
 
 namespace Rabit::Rtps
@@ -27,7 +28,7 @@ namespace Rabit::Rtps
 class CardReplay
 {
 public:
-    using TimePoint = Backoff::TimePoint;
+    using TimePoint = std::chrono::steady_clock::time_point;
     using Duration = Backoff::Duration;
 
     // Shortest interval between answers to the implementation.
@@ -96,7 +97,7 @@ private:
         std::int64_t Announced = 0;             // number of its announcement, counted from 1
         std::map<EntityId, Stream> Streams;
         bool IsKnown = false;  // the implementation has answered since the last retry
-        Backoff Retry{{FirstRetry, LongestRetry, 2.0, MostRetries}};
+        BackoffTimer<TimePoint> Retry{{FirstRetry, LongestRetry, 2.0, MostRetries}};
         std::optional<TimePoint> AnswerAt;
         TimePoint Answered{};
     };

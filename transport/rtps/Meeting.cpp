@@ -1,10 +1,11 @@
 #include "rtps/Meeting.h"
 
+#include <rabit/base/Earliest.h>
+
 #include <algorithm>
 #include <utility>
 
 #include "common/RtpsTraffic.h"
-#include "rtps/Earliest.h"
 #include "rtps/PackedCard.h"
 
 namespace Rabit::Rtps

@@ -33,7 +33,7 @@ namespace Rabit::Rtps
 class Meeting
 {
 public:
-    using TimePoint = Backoff::TimePoint;
+    using TimePoint = std::chrono::steady_clock::time_point;
     using Duration = Backoff::Duration;
 
     struct Settings

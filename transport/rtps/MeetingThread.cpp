@@ -1,11 +1,11 @@
 #include "rtps/MeetingThread.h"
 
+#include <rabit/base/Earliest.h>
+
 #include <algorithm>
 #include <map>
 #include <utility>
 #include <vector>
-
-#include "rtps/Earliest.h"
 
 namespace Rabit::Rtps
 {

@@ -42,7 +42,7 @@ MUTATIONS = [
     Mutation("announcements are not said", "BeatContents.cpp", "AddPart(beat, now, room);", "", FLEET),
     Mutation("nobody is asked for its announcement", "BeatContents.cpp", "wanted.offers = question.From;",
              "wanted.offers = BeatFormat::NotLacking;", NODES),
-    Mutation("who asks is answered each time", "OffersAnswer.cpp", "_gap = std::min(2 * _gap, ++_answers < QuickAnswers ? QuickGap : LongestGap);", "", PARTS),
+    Mutation("who asks is answered each time", "OffersAnswer.cpp", "const Duration gap = _gap.Next();", "const Duration gap = _gap.Interval();", PARTS),
     Mutation("any echo is believed", "PeerTable.cpp", "_sent.Find(own->beat);", "std::optional(Duration(0));", PARTS),
     Mutation("what is not as its digest says is taken", "OffersCollector.cpp",
              "if (Announcements::DigestOf(_parts.Bytes()) != digest)", "if (false)", PARTS),

@@ -1,69 +1,63 @@
 #include "AnnouncementRounds.h"
 
-#include <algorithm>
+#include <rabit/base/Earliest.h>
+
+#include <utility>
 
 namespace Rabit::Cyclone
 {
-
-void AnnouncementRounds::Series::Begin(TimePoint now, Duration gap, int rounds)
+namespace
 {
-    Gap = gap;
-    Due = now + Gap;
-    Left = rounds;
+
+// A series that begins `gap` after the first announcement.
+Backoff::Settings SeriesOf(Backoff::Duration gap, int rounds)
+{
+    return {2 * gap, Backoff::Duration::max(), 2.0, rounds};
 }
 
-bool AnnouncementRounds::Series::Pass(TimePoint now)
-{
-    if (!Due || now < *Due)
-    {
-        return false;
-    }
-    Gap *= 2;
-    Due = --Left > 0 ? std::optional(now + Gap) : std::nullopt;
-    return true;
-}
+}  // namespace
 
 AnnouncementRounds::AnnouncementRounds(Duration answerGap, TimePoint now, bool hasCard)
-    : _answerGap(answerGap), _last(now)
+    : _answerGap(answerGap),
+      _initial(hasCard ? SeriesOf(InitialGapWithCard, InitialRoundsWithCard)
+                       : SeriesOf(InitialGap, InitialRounds)),
+      _answers(SeriesOf(answerGap, MostAnswers)),
+      _last(now)
 {
-    hasCard ? _initial.Begin(now, InitialGapWithCard, InitialRoundsWithCard)
-            : _initial.Begin(now, InitialGap, InitialRounds);
+    _initial.Begin(now + (hasCard ? InitialGapWithCard : InitialGap));
 }
 
 void AnnouncementRounds::OnPeer(TimePoint now)
 {
     // An answer that is due already serves this newcomer too.
-    if (!_answers.Due || _answers.Left < MostAnswers)
+    if (!std::exchange(_owesAnswer, true))
     {
-        _answers.Begin(now, _answerGap, MostAnswers);
-        _answers.Due = std::max(*_answers.Due, _last + _spacing);
+        _answers.Begin(now + _answerGap);
+        _answers.Postpone(_last + _spacing.Interval());
     }
 }
 
 std::optional<AnnouncementRounds::TimePoint> AnnouncementRounds::Due() const
 {
-    if (_initial.Due && _answers.Due)
-    {
-        return std::min(*_initial.Due, *_answers.Due);
-    }
-    return _initial.Due ? _initial.Due : _answers.Due;
+    return Earliest({_initial.Due(), _answers.Due()});
 }
 
 bool AnnouncementRounds::Next(TimePoint now, bool unheard)
 {
-    const bool isFirstAnswer = _answers.Left == MostAnswers;
-    const bool answers = _answers.Pass(now);
-    if (answers && !isFirstAnswer && !unheard)
+    bool announces = false;
+    if (_answers.IsDue(now))
     {
-        _answers.Due.reset();
+        announces = std::exchange(_owesAnswer, false) || unheard;
+        announces ? _answers.Done(now) : _answers.Stop();
     }
-    const Duration initialGap = _initial.Gap;
-    const bool initial = _initial.Pass(now) && now - _last >= initialGap;
-    const bool announces = initial || (answers && (isFirstAnswer || unheard));
+    if (_initial.IsDue(now))
+    {
+        announces = announces || now - _last >= _initial.Interval() / 2;
+        _initial.Done(now);
+    }
     if (announces)
     {
-        _spacing = now - _last >= Rest ? Duration(ShortestSpacing)
-                                       : std::min<Duration>(2 * _spacing, LongestSpacing);
+        now - _last >= Rest ? _spacing.Reset() : static_cast<void>(_spacing.Next());
         _last = now;
     }
     return announces;

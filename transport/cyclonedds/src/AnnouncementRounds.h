@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <optional>
 
@@ -45,21 +47,12 @@ public:
     bool Next(TimePoint now, bool unheard);
 
 private:
-    struct Series
-    {
-        std::optional<TimePoint> Due;
-        Duration Gap{};
-        int Left = 0;
-
-        void Begin(TimePoint now, Duration gap, int rounds);
-        bool Pass(TimePoint now);  // true if a round is due
-    };
-
     const Duration _answerGap;
-    Series _initial;
-    Series _answers;
-    TimePoint _last;  // when it was last announced
-    Duration _spacing = ShortestSpacing;
+    BackoffTimer<TimePoint> _initial;
+    BackoffTimer<TimePoint> _answers;
+    bool _owesAnswer = false;  // a newcomer has had no answer yet
+    TimePoint _last;           // when it was last announced
+    Backoff _spacing{{ShortestSpacing, LongestSpacing}};
 };
 
 }  // namespace Rabit::Cyclone

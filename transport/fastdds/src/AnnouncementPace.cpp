@@ -6,17 +6,17 @@ namespace Rabit::FastDds
 {
 
 AnnouncementPace::AnnouncementPace(std::chrono::milliseconds period, bool hasCard)
-    : _longest(std::min<std::chrono::steady_clock::duration>(LongestGap, period / 2)),
-      _firstInitial(
+    : _firstInitial(
           std::min<std::chrono::steady_clock::duration>(hasCard ? InitialGapWithCard : FirstGap, period / 2)),
       _usual(period / 2),
+      _gap({std::min<Backoff::Duration>(FirstGap, period / 2),
+            std::min<Backoff::Duration>(LongestGap, period / 2)}),
       _initial(hasCard ? InitialRoundsWithCard : InitialRounds)
 {
 }
 
 void AnnouncementPace::Begin(std::uint64_t content, std::uint64_t heard, TimePoint now)
 {
-    const auto first = std::min<std::chrono::steady_clock::duration>(FirstGap, _longest);
     if (!_begun)
     {
         _initialGap = _firstInitial;
@@ -28,7 +28,14 @@ void AnnouncementPace::Begin(std::uint64_t content, std::uint64_t heard, TimePoi
         _initialGap *= 2;
         _nextInitial = now + _initialGap;
     }
-    _gap = !_begun || now - *_begun >= Rest ? first : std::min(2 * _gap, _longest);
+    if (!_begun || now - *_begun >= Rest)
+    {
+        _gap.Reset();
+    }
+    else
+    {
+        _gap.Next();
+    }
     _begun = now;
     _content = content;
     _heard = heard;
@@ -47,7 +54,7 @@ bool AnnouncementPace::MayGo(Destination destination, std::uint64_t content, std
                              TimePoint now)
 {
     if (!_begun || content != _content || _told.size() >= MostDestinations ||
-        (now - *_begun >= _gap && IsWanted(heard, now)))
+        (now - *_begun >= _gap.Interval() && IsWanted(heard, now)))
     {
         Begin(content, heard, now);
     }
@@ -64,11 +71,11 @@ std::optional<AnnouncementPace::TimePoint> AnnouncementPace::Due() const
     std::optional<TimePoint> due;
     if (_begun && _owed)
     {
-        due = *_begun + _gap;
+        due = *_begun + _gap.Interval();
     }
     if (_begun && _initial > 0 && (!due || _nextInitial < *due))
     {
-        due = std::max(_nextInitial, *_begun + _gap);
+        due = std::max(_nextInitial, *_begun + _gap.Interval());
     }
     return due;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -48,14 +50,13 @@ private:
     void Begin(std::uint64_t content, std::uint64_t heard, TimePoint now);
     bool IsWanted(std::uint64_t heard, TimePoint now) const;
 
-    const std::chrono::steady_clock::duration _longest;
     const std::chrono::steady_clock::duration _firstInitial;
     const std::chrono::steady_clock::duration _usual;  // after this, an announcement is a periodic one
     std::set<Destination> _told;                       // in this round
     std::optional<TimePoint> _begun;                   // this round
     std::uint64_t _content = 0;
     std::uint64_t _heard = 0;
-    std::chrono::steady_clock::duration _gap{};  // to the next round
+    Backoff _gap;  // to the next round
     bool _owed = false;
     int _initial;  // still to come
     std::chrono::steady_clock::duration _initialGap{};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
@@ -22,13 +24,10 @@ class HeartbeatPace
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
 
-    struct Gaps
-    {
-        std::chrono::milliseconds First;
-        std::chrono::milliseconds Longest;
-    };
-    static constexpr Gaps OfTopics{std::chrono::milliseconds(20), std::chrono::milliseconds(1000)};
-    static constexpr Gaps OfDiscovery{std::chrono::milliseconds(1000), std::chrono::milliseconds(4000)};
+    static constexpr Backoff::Settings OfTopics{std::chrono::milliseconds(20),
+                                                std::chrono::milliseconds(1000)};
+    static constexpr Backoff::Settings OfDiscovery{std::chrono::milliseconds(1000),
+                                                   std::chrono::milliseconds(4000)};
     static constexpr std::size_t Most = 4096;  // number of heartbeats, and of readers
 
     // `destination`: number of an address, chosen by the caller.
@@ -42,13 +41,11 @@ private:
     {
         std::int64_t First = 0;
         std::int64_t Last = 0;
+        Backoff Gap;
         TimePoint Next;  // when it may go again
-        std::chrono::milliseconds Gap{};
     };
     using Place = std::tuple<Rtps::EntityId, std::uint64_t, Rtps::GuidPrefix>;    // the writer first
     using Reader = std::tuple<Rtps::EntityId, Rtps::GuidPrefix, Rtps::EntityId>;  // the writer first
-
-    static Gaps GapsOf(Rtps::EntityId writer);
 
     std::map<Place, Sent> _sent;
     std::map<Reader, std::int64_t> _acknowledged;  // all samples before this one

@@ -1,7 +1,6 @@
 #include "RequestPace.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "guard/DeliveryCheck.h"
 
@@ -24,19 +23,16 @@ bool RequestPace::MayGo(std::uint32_t socket, const FirstRequest &request, TimeP
     }
     if (found == _asked.end() || now - found->second.Last >= Rest)
     {
-        const bool waits = IsBuiltin(request.Writer);
-        _asked.insert_or_assign(
-            key, Asked{.Last = now, .Next = now + (waits ? Patience : FirstGap), .Waits = waits});
-        return !waits;
+        _asked.insert_or_assign(key,
+                                Asked{.Last = now, .Next = IsBuiltin(request.Writer) ? now + Patience : now});
     }
-    Asked &asked = found->second;
+    Asked &asked = _asked.at(key);
     asked.Last = now;
     if (now < asked.Next)
     {
         return false;
     }
-    asked.Gap = std::exchange(asked.Waits, false) ? FirstGap : std::min(2 * asked.Gap, LongestGap);
-    asked.Next = now + asked.Gap;
+    asked.Next = now + asked.Gap.Next();
     return true;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -38,8 +40,7 @@ private:
     {
         TimePoint Last;  // when the vendor last sent it
         TimePoint Next;  // when it may go again
-        std::chrono::milliseconds Gap{FirstGap};
-        bool Waits = false;  // it was not sent yet
+        Backoff Gap{{FirstGap, LongestGap}};
     };
 
     std::map<std::pair<std::uint32_t, FirstRequest>, Asked> _asked;

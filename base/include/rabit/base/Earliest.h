@@ -3,16 +3,14 @@
 #include <initializer_list>
 #include <optional>
 
-#include "rtps/Backoff.h"
-
-namespace Rabit::Rtps
+namespace Rabit
 {
 
 // The earliest of several times; empty: none is set.
-inline std::optional<Backoff::TimePoint> Earliest(
-    std::initializer_list<std::optional<Backoff::TimePoint>> times)
+template <typename Time>
+std::optional<Time> Earliest(std::initializer_list<std::optional<Time>> times)
 {
-    std::optional<Backoff::TimePoint> earliest;
+    std::optional<Time> earliest;
     for (const auto &time : times)
     {
         earliest = time && (!earliest || *time < *earliest) ? time : earliest;
@@ -21,9 +19,10 @@ inline std::optional<Backoff::TimePoint> Earliest(
 }
 
 // True if the time is set, and not after `now`.
-inline bool IsBy(const std::optional<Backoff::TimePoint> &time, Backoff::TimePoint now)
+template <typename Time>
+bool IsBy(const std::optional<Time> &time, const Time &now)
 {
     return time && *time <= now;
 }
 
-}  // namespace Rabit::Rtps
+}  // namespace Rabit
