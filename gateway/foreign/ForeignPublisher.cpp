@@ -124,11 +124,7 @@ std::optional<Gateway::Problem> ForeignPublisher::Problem() const
     {
         return std::nullopt;
     }
-    Gateway::Problem problem;
-    problem.subject = "foreign " + _status.topic;
-    problem.reason = _status.reason;
-    problem.certain = _isMismatch;
-    return problem;
+    return Gateway::Problem{"foreign " + _status.topic, "", _status.reason, _isMismatch};
 }
 
 }  // namespace Rabit

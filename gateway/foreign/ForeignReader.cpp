@@ -385,11 +385,7 @@ std::optional<Gateway::Problem> ForeignReader::Problem() const
     {
         return std::nullopt;
     }
-    Gateway::Problem problem;
-    problem.subject = "foreign " + _status.topic;
-    problem.reason = std::move(reason);
-    problem.certain = _isMismatch;
-    return problem;
+    return Gateway::Problem{"foreign " + _status.topic, "", std::move(reason), _isMismatch};
 }
 
 }  // namespace Rabit

@@ -24,10 +24,9 @@ double &RateOf(TrafficClass traffic, Gateway::AirStatus &air)
 void AddTooLarge(const std::string &message, const std::string &limit, const std::string &remedy,
                  Gateway::Fleet &fleet)
 {
-    Gateway::Problem &problem = fleet.problems.emplace_back();
-    problem.subject = "publish " + message;
-    problem.reason = "one value takes more than a second of " + limit +
-                     ", and newer values wait meanwhile; post smaller ones" + remedy;
+    fleet.problems.push_back({"publish " + message, "",
+                              "one value takes more than a second of " + limit +
+                                  ", and newer values wait meanwhile; post smaller ones" + remedy});
 }
 
 }  // namespace

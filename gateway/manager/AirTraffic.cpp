@@ -23,11 +23,6 @@ constexpr Duration LimitPeriod = std::chrono::milliseconds(100);
 // While links wait for their turn, period of checks for other work of theirs, such as a message that expires.
 constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 
-// Share of a pace that beats take: half of the share of presence where other classes want to send. Not less,
-// since the reports on which the pace rests come with the other nodes' beats.
-constexpr double BeatShareOfPace = 0.125;
-// No setting asks for rare beats here, and a pace may come from bad weather alone.
-constexpr Duration SlowestBeatOfPace = std::chrono::seconds(1);
 // Share of a budget that the exchange of keys may take, so that beats get through meanwhile.
 constexpr double KeyShare = 0.5;
 constexpr double SmallestBeat = 100.0;  // on the air
@@ -158,23 +153,6 @@ std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
     return _presence.SendBeat(now, std::min(most, BeatFormat::Largest));
 }
 
-// Sets the period in which beats take their share of the budget, or of the capacity estimate if that is less.
-void AirTraffic::SetBeatPeriod(std::optional<double> budget, std::optional<double> carried)
-{
-    Duration period = BeatShare::Quickest;
-    if (budget)
-    {
-        const double share = BeatShare::OfBudget * *budget;
-        period = BeatShare::PeriodOf(_beatBytes, share, _config.Radio.SlowestBeat);
-    }
-    if (carried)
-    {
-        const double share = BeatShareOfPace * *carried;
-        period = std::max(period, BeatShare::PeriodOf(_beatBytes, share, SlowestBeatOfPace));
-    }
-    _presence.SetBeatPeriod(period);
-}
-
 void AirTraffic::SetLimit(Duration now)
 {
     _limitSetAt = now;
@@ -183,7 +161,7 @@ void AirTraffic::SetLimit(Duration now)
     _estimate.HeardLate(discoveryLate, _presence.QueueingDelay(now), now);
     const std::optional<double> carried = _estimate.Rate(now);
     const std::optional<double> budget = _config.Radio.Budget;
-    SetBeatPeriod(budget, carried);
+    _presence.SetBeatPeriod(BeatShare::PeriodOf(_beatBytes, budget, _config.Radio.SlowestBeat, carried));
     if (budget)
     {
         _schedule.Reserve(_unscheduled.Rate(now));

@@ -82,7 +82,6 @@ private:
     std::size_t TakeSent();
     void LookAtDiscovery(std::uint64_t sent);
     void Watch(Duration now);
-    void SetBeatPeriod(std::optional<double> budget, std::optional<double> carried);
     void SetLimit(Duration now);
     Duration ServeUnlimited(Duration now);
     Duration ServeLimited();

@@ -514,22 +514,14 @@ private:
         {
             if (!publisher.IsAttached())
             {
-                Gateway::Problem problem;
-                problem.subject = "publish " + publisher.Rule().Message;
-                problem.reason = "the local message `" + publisher.Rule().Message +
-                                 "` is of another type than `" + publisher.Rule().Type + "`";
-                fleet.problems.push_back(problem);
-            }
-        }
-        if (_config.Tap)
-        {
-            for (Gateway::Problem &problem : _config.Tap->Problems())
-            {
-                fleet.problems.push_back(std::move(problem));
+                fleet.problems.push_back({"publish " + publisher.Rule().Message, "",
+                                          "the local message `" + publisher.Rule().Message +
+                                              "` is of another type than `" + publisher.Rule().Type + "`"});
             }
         }
         for (const auto &problems :
-             {Diagnosis::OfSubscriptions(_subscriptions, _presence.Peers(), now - _openedAt, now),
+             {_config.Tap ? _config.Tap->Problems() : std::vector<Gateway::Problem>(),
+              Diagnosis::OfSubscriptions(_subscriptions, _presence.Peers(), now - _openedAt, now),
               _outgoing->Problems(), _links.Problems(), _presence.Problems(now), _slow.Problems(now)})
         {
             fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());

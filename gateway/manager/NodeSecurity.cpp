@@ -95,16 +95,14 @@ std::optional<Gateway::Problem> KeysProblem(std::optional<std::time_t> endsAt, s
     {
         return std::nullopt;
     }
-    Gateway::Problem problem;
-    problem.subject = "keys";
-    problem.reason =
+    return Gateway::Problem{
+        "keys", "",
         "the certificate of this node " +
-        (now > *endsAt
-             ? "ended on " + Keys::DayText(*endsAt) + ": who comes now does not let it in"
-             : "ends on " + Keys::DayText(*endsAt) + ": from then on who comes does not let it in") +
-        "; `rabit keys renew` makes a new one";
-    problem.certain = true;
-    return problem;
+            (now > *endsAt
+                 ? "ended on " + Keys::DayText(*endsAt) + ": who comes now does not let it in"
+                 : "ends on " + Keys::DayText(*endsAt) + ": from then on who comes does not let it in") +
+            "; `rabit keys renew` makes a new one",
+        true};
 }
 
 }  // namespace Rabit

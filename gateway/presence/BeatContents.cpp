@@ -1,5 +1,7 @@
 #include "presence/BeatContents.h"
 
+#include <rabit/base/Earliest.h>
+
 #include <algorithm>
 
 #include "presence/Whereabouts.h"
@@ -36,17 +38,7 @@ void BeatContents::Begin(std::vector<std::uint8_t> offers, std::size_t states)
 
 std::optional<BeatContents::Duration> BeatContents::QuestionDue() const
 {
-    if (_peers.Missing().IsEmpty() && _questions.IsEmpty() && _types.IsEmpty())
-    {
-        return std::nullopt;
-    }
-    std::optional<Duration> first;
-    for (const std::optional<Duration> &due :
-         {_peers.Missing().NextDue(), _questions.DueSince(), _types.NextDue()})
-    {
-        first = due ? std::min(first.value_or(*due), *due) : first;
-    }
-    return first;
+    return Earliest({_peers.Missing().NextDue(), _questions.DueSince(), _types.NextDue()});
 }
 
 std::size_t BeatContents::SizeOfPart(Duration now, std::size_t room) const

@@ -167,12 +167,10 @@ void Presence::TakeIn(const PresenceInbox::Contents &inbox, Duration now, Served
     }
     for (const std::string &node : inbox.OtherFormats)
     {
-        Gateway::Problem problem;
-        problem.subject = "node " + node;
-        problem.node = node;
-        problem.reason =
-            "its gateway speaks another version of presence than this one: neither knows what the other has";
-        _otherFormats.Note(problem, now);
+        _otherFormats.Note({"node " + node, node,
+                            "its gateway speaks another version of presence than this one: neither knows "
+                            "what the other has"},
+                           now);
     }
     KeepOneOfEach(served.StatesTold);
     KeepOneOfEach(served.StatesAsked);

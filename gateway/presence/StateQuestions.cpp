@@ -1,5 +1,7 @@
 #include "presence/StateQuestions.h"
 
+#include <rabit/base/Earliest.h>
+
 #include "names/TakeTurns.h"
 
 namespace Rabit
@@ -44,10 +46,7 @@ std::optional<StateQuestions::Duration> StateQuestions::DueSince() const
     std::optional<Duration> since;
     for (const auto &[node, entry] : _wanted)
     {
-        if (entry.DueSince)
-        {
-            since = std::min(since.value_or(*entry.DueSince), *entry.DueSince);
-        }
+        since = Earliest({since, entry.DueSince});
     }
     return since;
 }

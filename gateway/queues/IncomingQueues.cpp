@@ -30,12 +30,10 @@ bool IncomingQueues::Accepts(std::string_view source, std::string_view queue)
     const bool accepts = found != _accepted.end() && found->second.AcceptsFrom(source);
     if (!accepts)
     {
-        Gateway::Problem problem;
-        problem.subject = std::string("accept ").append(queue);
-        problem.node = source;
-        problem.reason = std::string(source) + " sends messages to queue `" + std::string(queue) +
-                         "`, which accepts none of it: they are refused";
-        _unwanted.Note(problem, _workspace.GetClock().Monotonic());
+        _unwanted.Note({std::string("accept ").append(queue), std::string(source),
+                        std::string(source) + " sends messages to queue `" + std::string(queue) +
+                            "`, which accepts none of it: they are refused"},
+                       _workspace.GetClock().Monotonic());
     }
     return accepts;
 }
@@ -113,10 +111,7 @@ std::vector<Gateway::Problem> IncomingQueues::Problems() const
     {
         if (!queue.Problem().empty())
         {
-            Gateway::Problem problem;
-            problem.subject = "accept " + name;
-            problem.reason = queue.Problem();
-            problems.push_back(problem);
+            problems.push_back({"accept " + name, "", queue.Problem()});
         }
     }
     return problems;

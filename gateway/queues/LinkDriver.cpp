@@ -129,13 +129,12 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
     }
     if (encoded[0] != LinkVersion)
     {
-        Gateway::Problem problem;
-        problem.subject = std::string("node ").append(info.Node);
-        problem.reason = "its gateway speaks version " + std::to_string(encoded[0]) +
-                         " of the queue links, this one version " + std::to_string(LinkVersion) +
-                         ": no queue message passes between them";
         const std::lock_guard lock(_mutex);
-        _recent.Note(problem, Now());
+        _recent.Note({std::string("node ").append(info.Node), "",
+                      "its gateway speaks version " + std::to_string(encoded[0]) +
+                          " of the queue links, this one version " + std::to_string(LinkVersion) +
+                          ": no queue message passes between them"},
+                     Now());
         return;
     }
     if (!LinkFrameCodec::Decode(encoded, frame) ||
@@ -417,10 +416,7 @@ std::vector<Gateway::Problem> LinkDriver::Problems() const
     }
     if (!storeError.empty())
     {
-        Gateway::Problem problem;
-        problem.subject = "state_dir " + _config.StateDir;
-        problem.reason = storeError;
-        problems.push_back(problem);
+        problems.push_back({"state_dir " + _config.StateDir, "", storeError});
     }
     return problems;
 }

@@ -85,12 +85,8 @@ std::vector<Gateway::Problem> RefusalCounts::Problems(Duration now) const
     {
         if (!entry.Reason.empty() && now - entry.Last < Memory)
         {
-            Gateway::Problem problem;
-            problem.subject = "send " + link.first + "/" + link.second;
-            problem.node = link.first == "*" ? "" : link.first;
-            problem.reason = entry.Reason;
-            problem.certain = entry.OtherVersion;
-            problems.push_back(problem);
+            problems.push_back({"send " + link.first + "/" + link.second, link.first == "*" ? "" : link.first,
+                                entry.Reason, entry.OtherVersion});
         }
     }
     return problems;

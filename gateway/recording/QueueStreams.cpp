@@ -143,12 +143,8 @@ std::vector<Gateway::Problem> QueueStreams::Problems()
 {
     const RecordingStatus status = _target->Status();
     std::vector<Gateway::Problem> problems;
-    const auto add = [&problems](const std::string &subject, const std::string &reason)
-    {
-        Gateway::Problem problem;
-        problem.subject = subject;
-        problem.reason = reason;
-        problems.push_back(std::move(problem));
+    const auto add = [&problems](const std::string &subject, const std::string &reason) {
+        problems.push_back({subject, "", reason});
     };
     if (!status.Problem.empty())
     {

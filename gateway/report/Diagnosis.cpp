@@ -107,14 +107,8 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTab
                                              std::chrono::nanoseconds now)
 {
     std::vector<Gateway::Problem> problems;
-    const auto add = [&problems, &wanted](const std::string &node, const std::string &reason, bool certain)
-    {
-        Gateway::Problem problem;
-        problem.subject = "subscribe " + wanted.Rule->Message;
-        problem.node = node;
-        problem.reason = reason;
-        problem.certain = certain;
-        problems.push_back(std::move(problem));
+    const auto add = [&problems, &wanted](const std::string &node, const std::string &reason, bool certain) {
+        problems.push_back({"subscribe " + wanted.Rule->Message, node, reason, certain});
     };
     const bool mayLack = MayLack(*wanted.Rule, peers);
     bool anyNode = false;

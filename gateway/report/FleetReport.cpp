@@ -32,11 +32,7 @@ Gateway::NodeStatus StatusOf(const PeerTable::Peer &peer, std::chrono::nanosecon
 void AddProblem(const std::string &subject, const std::string &node, const std::string &reason,
                 Gateway::Fleet &fleet)
 {
-    Gateway::Problem problem;
-    problem.subject = subject;
-    problem.node = node;
-    problem.reason = reason;
-    fleet.problems.push_back(std::move(problem));
+    fleet.problems.push_back({subject, node, reason});
 }
 
 }  // namespace

@@ -31,10 +31,7 @@ Duration StepBelow(Duration time)
 
 Gateway::Problem Row(const std::string &subject, std::string reason)
 {
-    Gateway::Problem problem;
-    problem.subject = "handler of " + subject;
-    problem.reason = std::move(reason);
-    return problem;
+    return Gateway::Problem{"handler of " + subject, "", std::move(reason)};
 }
 
 }  // namespace

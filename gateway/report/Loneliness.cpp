@@ -57,15 +57,14 @@ std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeerTabl
     {
         return std::nullopt;
     }
-    Gateway::Problem problem;
-    problem.subject = "network";
-    problem.reason = "nobody heard in domain " + std::to_string(config.Domain) + " on " +
-                     Listed(config.Interfaces, "all interfaces") + " for " +
-                     std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Patience).count()) +
-                     " s; " + WhatGoesOut(config, counters) + "; peers: " + Listed(config.Peers, "none") +
-                     " (gateway/CONNECTING.md)";
-    problem.certain = true;  // it has lasted already
-    return problem;
+    return Gateway::Problem{
+        "network", "",
+        "nobody heard in domain " + std::to_string(config.Domain) + " on " +
+            Listed(config.Interfaces, "all interfaces") + " for " +
+            std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Patience).count()) + " s; " +
+            WhatGoesOut(config, counters) + "; peers: " + Listed(config.Peers, "none") +
+            " (gateway/CONNECTING.md)",
+        true};
 }
 
 }  // namespace Rabit::Loneliness

@@ -51,14 +51,11 @@ void AddSharedNodes(RabitWorkspace &workspace, const std::string &name, Gateway:
             {
                 continue;
             }
-            Gateway::Problem problem;
-            problem.subject = "node " + node;
-            problem.node = node;
-            problem.reason = "the gateway `" + other +
-                             "` knows a node of this name too; queue messages for it go "
-                             "through `" +
-                             (isOtherFirst ? other : name) + "`";
-            fleet.problems.push_back(std::move(problem));
+            fleet.problems.push_back({"node " + node, node,
+                                      "the gateway `" + other +
+                                          "` knows a node of this name too; queue messages for it go "
+                                          "through `" +
+                                          (isOtherFirst ? other : name) + "`"});
         }
     }
 }

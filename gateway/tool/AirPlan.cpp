@@ -81,11 +81,8 @@ private:
             states == 0
                 ? BeatFormat::Empty
                 : BeatFormat::WithNews + BeatFormat::State * std::min(states, BeatFormat::MostStates)));
-        const auto period =
-            _config.Radio.Budget
-                ? BeatShare::PeriodOf(beat * static_cast<double>(copies),
-                                      BeatShare::OfBudget * *_config.Radio.Budget, _config.Radio.SlowestBeat)
-                : BeatShare::Quickest;
+        const auto period = BeatShare::PeriodOf(beat * static_cast<double>(copies), _config.Radio.Budget,
+                                                _config.Radio.SlowestBeat);
         _plan.Items.push_back({"beats", beat, 1.0 / Seconds(period), copies});
         _plan.Items.push_back({"discovery", Announcement,
                                1.0 / Seconds(TransportSettingsOf(_config, 0).AnnouncementPeriod), copies});

@@ -9,12 +9,8 @@ namespace Rabit::Tool
 std::vector<Gateway::Problem> ProblemsOfNodes(const Gateway::Fleet &fleet)
 {
     std::vector<Gateway::Problem> problems;
-    const auto add = [&problems](const std::string &node, const std::string &reason)
-    {
-        Gateway::Problem &problem = problems.emplace_back();
-        problem.subject = "node " + node;
-        problem.node = node;
-        problem.reason = reason;
+    const auto add = [&problems](const std::string &node, const std::string &reason) {
+        problems.push_back({"node " + node, node, reason});
     };
     for (const Gateway::NodeStatus &status : fleet.nodes)
     {

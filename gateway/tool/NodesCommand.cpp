@@ -72,10 +72,7 @@ std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
     {
         if (node.state != Gateway::NodeState::UP && node.reason != "left")
         {
-            Gateway::Problem &problem = problems.emplace_back();
-            problem.subject = "node " + node.node;
-            problem.node = node.node;
-            problem.reason = node.reason;
+            problems.push_back({"node " + node.node, node.node, node.reason});
         }
     }
     const std::vector<Gateway::Problem> own = ProblemsOfNodes(fleet);
@@ -106,9 +103,7 @@ std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
     }
     for (const std::string &line : Offers::Differences(nodes))
     {
-        Gateway::Problem &problem = problems.emplace_back();
-        problem.subject = "types";
-        problem.reason = line;
+        problems.push_back({"types", "", line});
     }
     return problems;
 }

@@ -25,8 +25,6 @@ inline constexpr std::uint16_t Problems =
     5;  // ProblemCount of the sender, in Wanted::states; none: no problem
 
 // Bytes of Wanted::states.
-inline constexpr std::size_t ToolBytes = 0;
-inline constexpr std::size_t ReplayBytes = 0;
 inline constexpr std::size_t TypeBytes = 16;
 inline constexpr std::size_t StrainBytes = 8;  // of each
 inline constexpr std::size_t ProblemBytes = 6;
