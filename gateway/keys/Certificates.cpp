@@ -1,5 +1,7 @@
 #include "keys/Certificates.h"
 
+#include <rabit/base/UtcText.h>
+
 #include <openssl/ec.h>
 #include <openssl/pem.h>
 #include <openssl/pkcs12.h>
@@ -7,7 +9,6 @@
 #include <openssl/x509v3.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <limits>
 
@@ -305,23 +306,14 @@ std::string FleetOf(const X509 &authority)
     return TextOf(at < 0 ? nullptr : X509_NAME_get_entry(name, at));
 }
 
-std::string TimeText(std::time_t time, const char *format)
-{
-    std::tm parts = {};
-    std::array<char, 32> text{};
-    ::gmtime_r(&time, &parts);
-    std::strftime(text.data(), text.size(), format, &parts);
-    return text.data();
-}
-
 std::string DayText(std::time_t time)
 {
-    return TimeText(time, "%Y-%m-%d");
+    return UtcText(time, "%Y-%m-%d");
 }
 
 std::string MinuteText(std::time_t time)
 {
-    return TimeText(time, "%Y-%m-%d %H:%M UTC");
+    return UtcText(time, "%Y-%m-%d %H:%M UTC");
 }
 
 }  // namespace Rabit::Keys

@@ -61,8 +61,6 @@ bool AreSame(const X509 &one, const X509 &other);
 // The fleet that an authority was made for.
 std::string FleetOf(const X509 &authority);
 
-// By a format of strftime, in UTC.
-std::string TimeText(std::time_t time, const char *format);
 // `2026-11-23`, in UTC.
 std::string DayText(std::time_t time);
 // `2026-11-23 12:05 UTC`

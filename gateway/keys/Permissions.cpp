@@ -1,5 +1,7 @@
 #include "keys/Permissions.h"
 
+#include <rabit/base/UtcText.h>
+
 #include <tinyxml2.h>
 #include <boost/algorithm/string/replace.hpp>
 
@@ -176,8 +178,8 @@ std::string PermissionsText(const SubjectName &subject, const Validity &validity
                        R"(http://www.omg.org/spec/DDS-SECURITY/20170901/omg_shared_ca_permissions.xsd">
 <permissions><grant name=")";
     text += subject.Node + "\"><subject_name>" + subject.Text() + "</subject_name>\n<validity><not_before>" +
-            TimeText(validity.From - Day, TimeFormat) + "</not_before><not_after>" +
-            TimeText(validity.To + Day, TimeFormat) + "</not_after></validity>\n<allow_rule><domains><id>" +
+            UtcText(validity.From - Day, TimeFormat) + "</not_before><not_after>" +
+            UtcText(validity.To + Day, TimeFormat) + "</not_after></validity>\n<allow_rule><domains><id>" +
             std::to_string(access.Domain) + "</id></domains>\n";
     AddEntries("publish", access.Publish, text);
     AddEntries("subscribe", access.Subscribe, text);

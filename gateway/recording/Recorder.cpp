@@ -23,8 +23,8 @@ Recorder::Recorder(std::unique_ptr<RecordingDisk> disk, const RecordingSettings 
       _inbox(settings.Record.Memory),
       _files(*_disk, settings),
       _blackBox(settings.Record.BlackBox
-                    ? std::make_optional<BlackBox>(settings.Record.BlackBox->Before, settings.Record.BlackBox->After,
-                                                   settings.Record.Memory)
+                    ? std::make_optional<BlackBox>(settings.Record.BlackBox->Before,
+                                                   settings.Record.BlackBox->After, settings.Record.Memory)
                     : std::nullopt),
       _thread([this] { Run(); })
 {

@@ -1,11 +1,10 @@
 #include "recording/RecordingFiles.h"
 
 #include <rabit/RabitVersion.h>
+#include <rabit/base/UtcText.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
-#include <ctime>
 #include <utility>
 
 namespace Rabit
@@ -30,12 +29,7 @@ std::string Mebibytes(std::uint64_t bytes)
 
 std::string DateOf(std::uint64_t time)
 {
-    const auto seconds = static_cast<std::time_t>(time / Second);
-    std::tm parts{};
-    gmtime_r(&seconds, &parts);
-    std::array<char, 32> text{};
-    std::strftime(text.data(), text.size(), "%Y%m%dT%H%M%SZ", &parts);
-    return text.data();
+    return UtcText(static_cast<std::time_t>(time / Second), "%Y%m%dT%H%M%SZ");
 }
 
 std::string Padded(std::uint64_t number)
@@ -389,8 +383,8 @@ void RecordingFiles::KeepWithinBytes()
         {
             return;
         }
-        if (Remove(name, _settings.Name + ": its files took more than the " + Mebibytes(_settings.Record.Keep) +
-                             " MiB that are kept"))
+        if (Remove(name, _settings.Name + ": its files took more than the " +
+                             Mebibytes(_settings.Record.Keep) + " MiB that are kept"))
         {
             total -= bytes;
         }
@@ -423,8 +417,8 @@ bool RecordingFiles::MakeRoom(std::uint64_t margin)
     }
     if (free && *free < margin)
     {
-        _status.Problem = "only " + Mebibytes(*free) + " MiB are free in " + _settings.Record.Folder + ", and " +
-                          Mebibytes(Margin()) + " are to stay free; move earlier recordings away";
+        _status.Problem = "only " + Mebibytes(*free) + " MiB are free in " + _settings.Record.Folder +
+                          ", and " + Mebibytes(Margin()) + " are to stay free; move earlier recordings away";
         return false;
     }
     return true;

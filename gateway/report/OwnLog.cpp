@@ -1,11 +1,10 @@
 #include "report/OwnLog.h"
 
 #include <rabit/RabitLog.h>
+#include <rabit/base/UtcText.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <ctime>
 #include <deque>
 #include <mutex>
 
@@ -37,19 +36,10 @@ const char *WordOf(RabitLogLevel level)
     return "error";
 }
 
-// UTC to the millisecond.
 std::string TimeNow()
 {
-    const auto now = std::chrono::system_clock::now();
-    const auto sinceEpoch = std::chrono::duration_cast<std::chrono::milliseconds>(now.time_since_epoch());
-    const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
-    std::tm utc{};
-    gmtime_r(&seconds, &utc);
-    char day[32];
-    const std::size_t size = std::strftime(day, sizeof day, "%Y-%m-%dT%H:%M:%S", &utc);
-    char milliseconds[8];
-    std::snprintf(milliseconds, sizeof milliseconds, ".%03dZ", static_cast<int>(sinceEpoch.count() % 1000));
-    return std::string(day, size) + milliseconds;
+    const std::chrono::nanoseconds now = std::chrono::system_clock::now().time_since_epoch();
+    return UtcText(static_cast<std::uint64_t>(now.count()));
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
 // rabit info: the contents of recordings.
+#include <rabit/base/UtcText.h>
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
@@ -42,15 +43,7 @@ double SecondsOf(const Contents &contents)
 
 std::string DateOf(std::uint64_t time)
 {
-    const auto seconds = static_cast<std::time_t>(time / 1000000000);
-    std::tm parts{};
-    std::array<char, 40> text{};
-    if (gmtime_r(&seconds, &parts) == nullptr ||
-        std::strftime(text.data(), text.size(), "%Y-%m-%d %H:%M:%S UTC", &parts) == 0)
-    {
-        return "?";
-    }
-    return text.data();
+    return UtcText(static_cast<std::time_t>(time / 1000000000), "%Y-%m-%d %H:%M:%S UTC");
 }
 
 // Returns a line about a merged file.

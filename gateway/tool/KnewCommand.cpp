@@ -1,4 +1,5 @@
 // rabit knew: the values that nodes had of each other's messages, and their ages.
+#include <rabit/base/UtcText.h>
 #include <rabit/dynamic/DynamicType.h>
 
 #include <CLI/CLI.hpp>
@@ -207,7 +208,7 @@ bool Show(const Options &options, const Asked &asked, const KnownStream &stream,
 
 std::string UtcOf(Moment moment)
 {
-    return TimeText(Merge::ToFile(moment));
+    return UtcText(Merge::ToFile(moment));
 }
 
 int ShowMoment(const Options &options, Asked &asked)

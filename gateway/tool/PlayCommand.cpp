@@ -1,6 +1,8 @@
 // rabit play: plays recordings to the network.
 #include <unistd.h>
 
+#include <rabit/base/UtcText.h>
+
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
@@ -108,13 +110,13 @@ int SetTimes(const Options &options, const Replay::RecordedMessages &messages,
     {
         Output::Talk("`" + (from ? options.To : options.From) +
                      "` is no time; expected seconds from the beginning, as 12.5, or UTC, as " +
-                     TimeText(first));
+                     UtcText(first));
         return Usage;
     }
     if (*from > *to || *from > last || *to < first)
     {
-        Output::Talk("nothing was recorded then; the recording is from " + TimeText(first) + " to " +
-                     TimeText(last));
+        Output::Talk("nothing was recorded then; the recording is from " + UtcText(first) + " to " +
+                     UtcText(last));
         return Usage;
     }
     settings.From = std::max(*from, first);

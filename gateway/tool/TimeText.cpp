@@ -4,7 +4,6 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace Rabit::Tool
@@ -155,21 +154,6 @@ std::string DurationText(double seconds)
         }
     }
     return "-";
-}
-
-std::string TimeText(std::uint64_t time)
-{
-    const std::chrono::sys_seconds seconds(std::chrono::seconds(time / SecondNs));
-    const auto days = std::chrono::floor<std::chrono::days>(seconds);
-    const std::chrono::year_month_day day(days);
-    const std::chrono::hh_mm_ss clock(seconds - days);
-    std::array<char, 40> text{};
-    std::snprintf(text.data(), text.size(), "%04d-%02u-%02uT%02d:%02d:%02d.%03uZ",
-                  static_cast<int>(day.year()), static_cast<unsigned>(day.month()),
-                  static_cast<unsigned>(day.day()), static_cast<int>(clock.hours().count()),
-                  static_cast<int>(clock.minutes().count()), static_cast<int>(clock.seconds().count()),
-                  static_cast<unsigned>(time % SecondNs / 1'000'000));
-    return text.data();
 }
 
 }  // namespace Rabit::Tool

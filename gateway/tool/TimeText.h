@@ -19,7 +19,4 @@ std::optional<std::uint64_t> TimeOf(std::string_view text, std::uint64_t begin);
 // finite.
 std::string DurationText(double seconds);
 
-// Writes a moment as TimeOf reads it, to the millisecond: `2026-11-23T04:04:07.250Z`.
-std::string TimeText(std::uint64_t time);
-
 }  // namespace Rabit::Tool

@@ -27,7 +27,7 @@ struct ReplayStream
     std::string Peer;  // the node of the queue
     std::string Type;  // IDL name
     std::string IdlText;
-    std::string Qos;  // as it was recorded
+    std::string Qos;       // as it was recorded
     std::string Recorder;  // the node that recorded it; empty: not known
 };
 

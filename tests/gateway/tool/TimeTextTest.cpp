@@ -1,5 +1,7 @@
 #include "TimeText.h"
 
+#include <rabit/base/UtcText.h>
+
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -89,9 +91,9 @@ TEST(TimeText, RefusesMomentsThatDoNotFit)
 
 TEST(TimeText, WritesUtcAsItIsRead)
 {
-    EXPECT_EQ(TimeText(Begin + Second / 4), "2026-11-23T04:04:07.250Z");
-    EXPECT_EQ(TimeOf(TimeText(Begin + Second / 4), 0), Begin + Second / 4);
-    EXPECT_EQ(TimeText(std::numeric_limits<std::uint64_t>::max()), "2554-07-21T23:34:33.709Z");
+    EXPECT_EQ(UtcText(Begin + Second / 4), "2026-11-23T04:04:07.250Z");
+    EXPECT_EQ(TimeOf(UtcText(Begin + Second / 4), 0), Begin + Second / 4);
+    EXPECT_EQ(UtcText(std::numeric_limits<std::uint64_t>::max()), "2554-07-21T23:34:33.709Z");
 }
 
 }  // namespace
