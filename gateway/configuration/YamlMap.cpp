@@ -1,10 +1,10 @@
 #include "configuration/YamlMap.h"
 
+#include <rabit/base/NumberIn.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 
@@ -16,14 +16,6 @@ namespace
 int LineOf(const YAML::Node &node)
 {
     return node.Mark().line + 1;
-}
-
-// Reads the whole text as a number; false if it is none.
-template <typename Number>
-bool ParseWhole(const std::string &text, Number &value)
-{
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() && !text.empty();
 }
 
 }  // namespace
@@ -151,10 +143,12 @@ void YamlMap::Read(const std::string &key, double &value) const
     if (const YAML::Node *node = Find(key))
     {
         const std::string &text = Scalar(*node, key, "a number");
-        if (!ParseWhole(text, value) || !std::isfinite(value))
+        const auto number = NumberIn<double>(text);
+        if (!number || !std::isfinite(*number))
         {
             Fail(LineOf(*node), "`" + key + "` is `" + text + "`; expected a number");
         }
+        value = *number;
     }
 }
 
@@ -164,11 +158,13 @@ void YamlMap::ReadWhole(const std::string &key, Number &value, Number least, Num
     if (const YAML::Node *node = Find(key))
     {
         const std::string &text = Scalar(*node, key, "a whole number");
-        if (!ParseWhole(text, value) || value < least || value > most)
+        const auto number = NumberIn<Number>(text);
+        if (!number || *number < least || *number > most)
         {
             Fail(LineOf(*node), "`" + key + "` is `" + text + "`; expected a whole number from " +
                                     std::to_string(least) + " to " + std::to_string(most));
         }
+        value = *number;
     }
 }
 
@@ -191,14 +187,13 @@ void YamlMap::Read(const std::string &key, std::chrono::milliseconds &value) con
     }
     const std::string &text = Scalar(*node, key, "a time such as 5s or 200ms");
     const std::size_t unitAt = text.find_first_not_of("0123456789.");
-    double number = 0.0;
     double milliseconds = -1.0;
-    if (unitAt != std::string::npos && ParseWhole(text.substr(0, unitAt), number))
+    if (const auto number = NumberIn<double>(text.substr(0, unitAt)); number && unitAt != std::string::npos)
     {
         const std::string unit = text.substr(unitAt);
-        milliseconds = unit == "ms"    ? number
-                       : unit == "s"   ? number * 1e3
-                       : unit == "min" ? number * 6e4
+        milliseconds = unit == "ms"    ? *number
+                       : unit == "s"   ? *number * 1e3
+                       : unit == "min" ? *number * 6e4
                                        : -1.0;
     }
     // A year is longer than anything that is timed here, and far from overflowing.
@@ -225,13 +220,13 @@ void YamlMap::ReadByteRate(const std::string &key, std::optional<double> &value)
     const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
     const std::string unit = text.substr(unitAt);
     const double factor = unit == "B/s" ? 1.0 : unit == "kB/s" ? 1e3 : unit == "MB/s" ? 1e6 : 0.0;
-    double number = 0.0;
-    if (factor == 0.0 || !ParseWhole(text.substr(0, unitAt), number) || !std::isfinite(number))
+    const auto number = NumberIn<double>(text.substr(0, unitAt));
+    if (factor == 0.0 || !number || !std::isfinite(*number))
     {
         Fail(LineOf(*node),
              "`" + key + "` is `" + text + "`; expected auto, or bytes a second such as 1500B/s or 5kB/s");
     }
-    value = number * factor;
+    value = *number * factor;
 }
 
 void YamlMap::ReadByteSize(const std::string &key, std::uint64_t &value, const ByteRange &range) const

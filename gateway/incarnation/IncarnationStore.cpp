@@ -1,12 +1,12 @@
 #include "incarnation/IncarnationStore.h"
 
 #include <fcntl.h>
+#include <rabit/base/NumberIn.h>
 #include <rabit/gateway/links/LinkMessages.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <fstream>
 #include <limits>
@@ -166,14 +166,12 @@ std::uint32_t IncarnationStore::ReadCounter()
         _readError = "cannot read the incarnation from " + _file.string();
         return 0;
     }
-    std::uint32_t counter = 0;
-    const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), counter);
-    if (problem != std::errc() || end != text.data() + text.size())
+    const auto counter = NumberIn<std::uint32_t>(text);
+    if (!counter)
     {
         _readError = "no incarnation in " + _file.string() + ": '" + text.substr(0, 40) + "'";
-        return 0;
     }
-    return counter;
+    return counter.value_or(0);
 }
 
 // Writes a new file beside the old one and renames it, so that the disk holds one whole file at any moment.

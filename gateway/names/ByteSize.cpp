@@ -1,7 +1,8 @@
 #include "names/ByteSize.h"
 
+#include <rabit/base/NumberIn.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -39,14 +40,12 @@ std::uint64_t ParseByteSize(const std::string &text, const ByteRange &range)
     const std::size_t unitAt = std::min(text.find_first_not_of("0123456789."), text.size());
     const auto *const unit =
         std::find(std::begin(Units), std::end(Units), std::string_view(text).substr(unitAt));
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + unitAt, number);
-    if (unit == std::end(Units) || error != std::errc() || end != text.data() + unitAt ||
-        !std::isfinite(number))
+    const auto number = NumberIn<double>(text.substr(0, unitAt));
+    if (unit == std::end(Units) || !number || !std::isfinite(*number))
     {
         throw std::invalid_argument("expected bytes such as 64MB or 1GB");
     }
-    const double bytes = number * std::pow(1000.0, unit - std::begin(Units));
+    const double bytes = *number * std::pow(1000.0, unit - std::begin(Units));
     if (!(bytes >= static_cast<double>(range.Least) && bytes <= static_cast<double>(range.Most)))
     {
         throw std::invalid_argument("expected " + SizeText(range.Least) + " to " + SizeText(range.Most));

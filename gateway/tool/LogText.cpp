@@ -1,9 +1,9 @@
 #include "LogText.h"
 
-#include <charconv>
+#include <rabit/base/NumberIn.h>
+
 #include <cstddef>
 #include <string_view>
-#include <system_error>
 
 #include "SafeText.h"
 
@@ -14,15 +14,12 @@ std::optional<LogText> LogTextOf(const std::string &report)
 {
     LogText log;
     const std::size_t end = report.find('\n');
-    if (end == std::string::npos)
+    const auto first = NumberIn<decltype(log.First)>(report.substr(0, end));
+    if (end == std::string::npos || !first)
     {
         return std::nullopt;
     }
-    const auto [after, error] = std::from_chars(report.data(), report.data() + end, log.First);
-    if (error != std::errc() || after != report.data() + end)
-    {
-        return std::nullopt;
-    }
+    log.First = *first;
     std::size_t begin = end + 1;
     for (std::size_t next = report.find('\n', begin); next != std::string::npos;
          next = report.find('\n', begin))

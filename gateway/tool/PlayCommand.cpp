@@ -1,13 +1,13 @@
 // rabit play: plays recordings to the network.
 #include <unistd.h>
 
+#include <rabit/base/NumberIn.h>
 #include <rabit/base/UtcText.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -57,11 +57,8 @@ std::optional<double> RateOf(const std::string &text)
     {
         return 0.0;
     }
-    double rate = 0.0;
-    const char *end = text.data() + text.size();
-    const auto parsed = std::from_chars(text.data(), end, rate, std::chars_format::fixed);
-    const bool isNumber = parsed.ec == std::errc() && parsed.ptr == end;
-    return isNumber && rate >= 0.1 && rate <= 100.0 ? std::optional(rate) : std::nullopt;
+    const auto rate = NumberIn<double>(text, std::chars_format::fixed);
+    return rate && *rate >= 0.1 && *rate <= 100.0 ? rate : std::nullopt;
 }
 
 // Returns Good, or reports the error and returns the exit code.

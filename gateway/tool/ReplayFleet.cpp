@@ -39,20 +39,12 @@ std::set<std::string> RecordersIn(const Replay::ReplayPlan &plan)
 std::vector<Replay::ReplayPresence::Known> NodesIn(const DynamicType &type, const Mcap::Bytes &sample)
 {
     std::vector<Replay::ReplayPresence::Known> known;
-    const auto text = type.ToJson(sample);
-    const auto json = nlohmann::json::parse(text.value_or("{}"), nullptr, false);
-    const auto nodes = json.is_object() ? json.find("nodes") : json.end();
-    if (!json.is_object() || nodes == json.end() || !nodes->is_array())
+    const auto json = nlohmann::json::parse(type.ToJson(sample).value_or("{}"), nullptr, false);
+    for (const auto &node : json.is_object() ? json.value("nodes", nlohmann::json::array()) : json)
     {
-        return known;
-    }
-    for (const auto &node : *nodes)
-    {
-        const auto name = node.is_object() ? node.find("node") : node.end();
-        const auto state = node.is_object() ? node.find("state") : node.end();
-        if (node.is_object() && name != node.end() && name->is_string() && state != node.end())
+        if (node.contains("node") && node.contains("state") && node["node"].is_string())
         {
-            known.push_back({name->get<std::string>(), *state == "LOST"});
+            known.push_back({node["node"], node["state"] == "LOST"});
         }
     }
     return known;

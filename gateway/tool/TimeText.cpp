@@ -1,7 +1,8 @@
 #include "TimeText.h"
 
+#include <rabit/base/NumberIn.h>
+
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -24,12 +25,9 @@ constexpr bool IsDigit(char c)
 // Reads a number of digits and a point alone, as nanoseconds.
 std::optional<std::uint64_t> SecondsIn(std::string_view text)
 {
-    double seconds = 0.0;
-    const auto [end, error] =
-        std::from_chars(text.data(), text.data() + text.size(), seconds, std::chars_format::fixed);
-    const bool isNumber = error == std::errc() && end == text.data() + text.size();
-    return isNumber && seconds >= 0.0 && seconds < LongestSeconds
-               ? std::optional(static_cast<std::uint64_t>(seconds * 1e9 + 0.5))
+    const auto seconds = NumberIn<double>(text, std::chars_format::fixed);
+    return seconds && *seconds >= 0.0 && *seconds < LongestSeconds
+               ? std::optional(static_cast<std::uint64_t>(*seconds * 1e9 + 0.5))
                : std::nullopt;
 }
 

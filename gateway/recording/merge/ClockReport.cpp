@@ -1,8 +1,10 @@
 #include "recording/merge/ClockReport.h"
 
+#include <rabit/base/NumberIn.h>
+
 #include <nlohmann/json.hpp>
 
-#include <charconv>
+#include <stdexcept>
 
 namespace Rabit::Merge
 {
@@ -11,61 +13,49 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
+// What reads throws an exception if something is missing or of another kind.
+
 // 64-bit numbers are texts, for readers that know floating point alone.
 template <typename Number>
-std::optional<Number> NumberOf(const Json &json, const char *member)
+Number NumberOf(const Json &json, const char *member)
 {
-    const auto found = json.find(member);
-    if (found == json.end() || !found->is_string())
-    {
-        return std::nullopt;
-    }
-    const std::string &text = found->get_ref<const std::string &>();
-    Number number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+    return NumberIn<Number>(json.at(member).get_ref<const std::string &>()).value();
 }
 
-std::optional<Moment> ShiftOf(const Json &json)
+Moment ShiftOf(const Json &json)
 {
     const auto shift = NumberOf<Moment>(json, "source_to_log_ns");
-    return shift && Within(*shift) == *shift ? shift : std::nullopt;
+    return Within(shift) == shift ? shift : throw std::out_of_range("too far");
 }
 
-std::optional<Json> ObjectOf(Mcap::ByteView bytes)
+void AddPeer(const Json &json, ClockReport &report)
 {
-    Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-    return json.is_object() ? std::optional(std::move(json)) : std::nullopt;
-}
-
-std::optional<ClockReport::Peer> PeerOf(const Json &json)
-{
-    if (!json.is_object())
+    try
     {
-        return std::nullopt;
+        ClockReport::Peer peer{json.at("node"), NumberOf<std::uint64_t>(json, "incarnation"), ShiftOf(json),
+                               std::nullopt};
+        if (const Json uncertain = json.value("uncertain_by_ns", Json()); uncertain.is_number_integer())
+        {
+            const auto by = uncertain.get<Moment>();
+            peer.UncertainBy = by >= 0 && by <= FarthestMoment ? std::optional(by) : std::nullopt;
+        }
+        report.Peers.push_back(std::move(peer));
     }
-    const auto node = json.find("node");
-    const auto incarnation = NumberOf<std::uint64_t>(json, "incarnation");
-    const auto shift = ShiftOf(json);
-    if (node == json.end() || !node->is_string() || !incarnation || !shift)
+    catch (const std::exception &)
     {
-        return std::nullopt;
+        // Malformed peers are left out.
     }
-    ClockReport::Peer peer{node->get<std::string>(), *incarnation, *shift, std::nullopt};
-    const auto uncertain = json.find("uncertain_by_ns");
-    if (uncertain != json.end() && uncertain->is_number_integer())
-    {
-        const auto by = uncertain->get<Moment>();
-        peer.UncertainBy = by >= 0 && by <= FarthestMoment ? std::optional(by) : std::nullopt;
-    }
-    return peer;
 }
 
 void Shift(Json &json, Moment later)
 {
-    if (const auto shift = ShiftOf(json))
+    try
     {
-        json["source_to_log_ns"] = std::to_string(*shift + later);
+        json["source_to_log_ns"] = std::to_string(ShiftOf(json) + later);
+    }
+    catch (const std::exception &)
+    {
+        // It tells no shift.
     }
 }
 
@@ -73,48 +63,38 @@ void Shift(Json &json, Moment later)
 
 std::optional<ClockReport> ReadClockReport(Mcap::ByteView json)
 {
-    const auto object = ObjectOf(json);
-    const auto incarnation = object ? NumberOf<std::uint64_t>(*object, "incarnation") : std::nullopt;
-    const auto shift = object ? ShiftOf(*object) : std::nullopt;
-    if (!incarnation || !shift)
+    try
+    {
+        const Json object = Json::parse(json.begin(), json.end());
+        ClockReport report{NumberOf<std::uint64_t>(object, "incarnation"), ShiftOf(object), {}};
+        for (const Json &peer : object.value("peers", Json::array()))
+        {
+            AddPeer(peer, report);
+        }
+        return report;
+    }
+    catch (const std::exception &)
     {
         return std::nullopt;
     }
-    ClockReport report{*incarnation, *shift, {}};
-    const auto peers = object->find("peers");
-    if (peers != object->end() && peers->is_array())
-    {
-        for (const Json &one : *peers)
-        {
-            if (auto peer = PeerOf(one))
-            {
-                report.Peers.push_back(std::move(*peer));
-            }
-        }
-    }
-    return report;
 }
 
 std::optional<Mcap::Bytes> ShiftClockReport(Mcap::ByteView json, Moment later)
 {
-    auto object = ObjectOf(json);
-    if (!object)
+    Json object = Json::parse(json.begin(), json.end(), nullptr, false);
+    if (!object.is_object())
     {
         return std::nullopt;
     }
-    Shift(*object, later);
-    const auto peers = object->find("peers");
-    if (peers != object->end() && peers->is_array())
+    Shift(object, later);
+    if (object.contains("peers"))
     {
-        for (Json &peer : *peers)
+        for (Json &peer : object["peers"])
         {
-            if (peer.is_object())
-            {
-                Shift(peer, later);
-            }
+            Shift(peer, later);
         }
     }
-    const std::string text = object->dump(-1, ' ', true, Json::error_handler_t::replace);
+    const std::string text = object.dump(-1, ' ', true, Json::error_handler_t::replace);
     return Mcap::Bytes(text.begin(), text.end());
 }
 

@@ -1,7 +1,8 @@
 #include "recording/merge/Knowledge.h"
 
+#include <rabit/base/NumberIn.h>
+
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <tuple>
 
@@ -20,12 +21,9 @@ namespace
 constexpr Moment ClocksAround = 100 * OneSecond;
 
 template <typename Number>
-std::optional<Number> NumberIn(const Mcap::TextMap &values, const std::string &key)
+std::optional<Number> NumberOf(const Mcap::TextMap &values, const std::string &key)
 {
-    const std::string text = Mcap::ValueOf(values, key);
-    Number number = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
+    return NumberIn<Number>(Mcap::ValueOf(values, key));
 }
 
 // Returns `Pose` for `uav1/Pose`.
@@ -42,10 +40,10 @@ std::vector<KnowerLife> LivesOf(const Mcap::Contents &contents)
         const Mcap::TextMap &values = metadata.Values;
         if (metadata.Name == "rabit.recording")
         {
-            lives.push_back({Mcap::ValueOf(values, "node"), NumberIn<unsigned>(values, "life").value_or(1),
-                             NumberIn<std::uint64_t>(values, "incarnation").value_or(0),
-                             Within(NumberIn<Moment>(values, "begin_ns").value_or(0)),
-                             Within(NumberIn<Moment>(values, "end_ns").value_or(0))});
+            lives.push_back({Mcap::ValueOf(values, "node"), NumberOf<unsigned>(values, "life").value_or(1),
+                             NumberOf<std::uint64_t>(values, "incarnation").value_or(0),
+                             Within(NumberOf<Moment>(values, "begin_ns").value_or(0)),
+                             Within(NumberOf<Moment>(values, "end_ns").value_or(0))});
         }
     }
     if (lives.empty())
@@ -61,7 +59,7 @@ bool IsOf(const Mcap::Channel &channel, const KnowerLife &life)
 {
     return channel.Metadata.count("rabit.recorded_by") == 0 ||
            (channel.Metadata.at("rabit.recorded_by") == life.Node &&
-            NumberIn<unsigned>(channel.Metadata, "rabit.life") == life.Number);
+            NumberOf<unsigned>(channel.Metadata, "rabit.life") == life.Number);
 }
 
 // The last message of some channels from `from` to `to`.
@@ -135,7 +133,7 @@ void AddUncertainty(Mcap::ByteSource &source, const Mcap::Contents &contents, co
 
 Knowledge::Knowledge(const Mcap::Contents &contents)
     : Lives(LivesOf(contents)),
-      WorstBound(NumberIn<Moment>(MetadataOf(contents, "rabit.merge"), "uncertain_by_ns"))
+      WorstBound(NumberOf<Moment>(MetadataOf(contents, "rabit.merge"), "uncertain_by_ns"))
 {
     std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> known;
     for (const auto &[id, channel] : contents.Channels)

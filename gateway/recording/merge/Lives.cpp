@@ -1,7 +1,8 @@
 #include "recording/merge/Lives.h"
 
+#include <rabit/base/NumberIn.h>
+
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <tuple>
 #include <utility>
@@ -23,13 +24,6 @@ struct Found
     std::string Recording;                     // empty: it does not say
     std::optional<std::uint64_t> Incarnation;  // empty: nothing tells it
 };
-
-std::uint64_t NumberIn(const std::string &text)
-{
-    std::uint64_t number = 0;
-    std::from_chars(text.data(), text.data() + text.size(), number);
-    return number;
-}
 
 class Reader
 {
@@ -95,7 +89,8 @@ private:
             _lives.Problem = path + ": does not say which node recorded it";
             return;
         }
-        found.File.Number = NumberIn(Mcap::ValueOf(MetadataOf(contents, "rabit.file"), "number"));
+        found.File.Number =
+            NumberIn<std::uint64_t>(Mcap::ValueOf(MetadataOf(contents, "rabit.file"), "number")).value_or(0);
         found.File.Begin = FromFile(contents.Statistics.StartTime);
         found.File.End = FromFile(contents.Statistics.EndTime);
         _found.push_back(std::move(found));

@@ -1,9 +1,10 @@
 #include "recording/merge/Merger.h"
 
+#include <rabit/base/NumberIn.h>
+
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 namespace Rabit::Merge
@@ -45,19 +46,19 @@ std::string TextOf(std::optional<Moment> bound)
 std::optional<Mcap::Bytes> ShiftLogLine(Mcap::ByteView bytes, const TimeMap &map)
 {
     Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
-    const auto time = json.is_object() ? json.find("timestamp") : json.end();
-    if (!json.is_object() || time == json.end() || !time->is_object() || !time->contains("sec") ||
-        !time->contains("nsec") || !(*time)["sec"].is_number_integer() ||
-        !(*time)["nsec"].is_number_integer())
+    const Json::json_pointer sec("/timestamp/sec");
+    const Json::json_pointer nsec("/timestamp/nsec");
+    if (!json.contains(sec) || !json.contains(nsec) || !json[sec].is_number_integer() ||
+        !json[nsec].is_number_integer())
     {
         return std::nullopt;
     }
     const Moment most = FarthestMoment / OneSecond;
-    const Moment seconds = std::clamp((*time)["sec"].get<Moment>(), -most, most);
-    const Moment at = map.At(Within(seconds * OneSecond + Within((*time)["nsec"].get<Moment>())));
+    const Moment seconds = std::clamp(json[sec].get<Moment>(), -most, most);
+    const Moment at = map.At(Within(seconds * OneSecond + Within(json[nsec].get<Moment>())));
     const std::uint64_t shown = ToFile(at);
-    (*time)["sec"] = shown / static_cast<std::uint64_t>(OneSecond);
-    (*time)["nsec"] = shown % static_cast<std::uint64_t>(OneSecond);
+    json[sec] = shown / static_cast<std::uint64_t>(OneSecond);
+    json[nsec] = shown % static_cast<std::uint64_t>(OneSecond);
     const std::string text = TextOf(json);
     return Mcap::Bytes(text.begin(), text.end());
 }
@@ -331,10 +332,8 @@ void Merger::WriteLife(std::size_t life, std::map<std::string, std::uint64_t> &l
     }
     for (const auto &[topic, text] : losses)
     {
-        std::uint64_t count = 0;
-        std::from_chars(text.data(), text.data() + text.size(), count);
         const auto known = topics.find(topic);
-        lost[known == topics.end() ? topic : known->second] += count;
+        lost[known == topics.end() ? topic : known->second] += NumberIn<std::uint64_t>(text).value_or(0);
     }
 }
 

@@ -1,11 +1,12 @@
 #include "recording/rerun/StepText.h"
 
+#include <rabit/base/NumberIn.h>
+
 #include <boost/algorithm/hex.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstddef>
 #include <iterator>
 #include <stdexcept>
@@ -26,21 +27,14 @@ constexpr std::array KindWords = {"monotonic", "gps_time", "fetched", "posted",
 // What reads throws an exception if the text is not of that kind.
 
 template <typename Number>
-Number NumberIn(const Json &json)
+Number NumberOf(const Json &json)
 {
-    const auto &text = json.get_ref<const std::string &>();
-    Number number{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size())
-    {
-        throw std::invalid_argument("not a number");
-    }
-    return number;
+    return NumberIn<Number>(json.get_ref<const std::string &>()).value();
 }
 
 std::chrono::nanoseconds TimeIn(const Json &json)
 {
-    return std::chrono::nanoseconds(NumberIn<std::int64_t>(json));
+    return std::chrono::nanoseconds(NumberOf<std::int64_t>(json));
 }
 
 // Returns the value of that name, whose index is the same.
@@ -122,7 +116,7 @@ StepEvent EventIn(const Json &json)
             return event;
         case Kind::Fetched:
         case Kind::Posted:
-            event.Number = NumberIn<std::uint64_t>(json.at("number"));
+            event.Number = NumberOf<std::uint64_t>(json.at("number"));
             break;
         default:
             break;
@@ -165,7 +159,7 @@ std::optional<ManagerStep> StepOf(std::string_view text)
         const Json json = Json::parse(text);
         ManagerStep step;
         step.What = ValueIn<Step>(json.at("step"), StepWords);
-        step.Number = NumberIn<std::uint64_t>(json.at("number"));
+        step.Number = NumberOf<std::uint64_t>(json.at("number"));
         step.Began = TimeIn(json.at("monotonic_ns"));
         step.BeganGpsTime = json.at("gps_time_s").get<double>();
         step.IsTurn = json.value("turn", false);
