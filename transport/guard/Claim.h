@@ -5,9 +5,9 @@
 namespace Rabit::Rtps
 {
 
-// The accepted value of one thing that an unauthenticated peer claims, and the last other value. Another value
-// is accepted when it came OftenEnough in a row, so that an honest peer can change, and one forged or damaged
-// datagram changes nothing. Not thread-safe.
+// The accepted value of one thing that an unauthenticated peer claims, and the last other value. Another
+// value is accepted when it came OftenEnough in a row, so that an honest peer can change, and one forged or
+// damaged datagram changes nothing. Not thread-safe.
 template <typename Value>
 class Claim
 {
