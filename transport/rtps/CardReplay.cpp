@@ -8,7 +8,6 @@
 
 #include "common/RtpsReader.h"
 #include "common/RtpsWriter.h"
-#include "rtps/Earliest.h"
 
 namespace Rabit::Rtps
 {
