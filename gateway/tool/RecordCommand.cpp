@@ -39,28 +39,12 @@ struct Options
 {
     CommonOptions Common;
     std::vector<std::string> What = {"*/*"};
-    std::vector<std::string> Except;
-    std::string Folder = ".";
+    RecordSettings Record{.Folder = "."};
     std::string Name = "fleet";
     double For = FleetSession::Forever;
-    // As in the section `record` of a configuration: bytes, milliseconds.
-    std::uint64_t SplitSize = RecordSettings().SplitSize;
+    // Milliseconds.
     std::uint64_t SplitTime = static_cast<std::uint64_t>(RecordSettings().SplitTime.count());
-    std::uint64_t Keep = RecordSettings().Keep;
-    std::uint64_t Free = RecordSettings().Free;
 };
-
-RecordingSettings SettingsOf(const Options &options)
-{
-    RecordingSettings settings;
-    settings.Name = options.Name;
-    settings.Folder = options.Folder;
-    settings.SplitBytes = options.SplitSize;
-    settings.SplitTime = std::chrono::milliseconds(options.SplitTime);
-    settings.KeepBytes = options.Keep;
-    settings.FreeBytes = options.Free;
-    return settings;
-}
 
 // Returns why no file can be made in the folder; empty if one can. Makes the folder if it is missing.
 std::string WhyNoFile(const std::string &folder)
@@ -90,7 +74,7 @@ public:
     {
         if (status.LastFile != _file && !status.LastFile.empty())
         {
-            Output::Talk("recording into " + _options.Folder + "/" + status.LastFile);
+            Output::Talk("recording into " + _options.Record.Folder + "/" + status.LastFile);
         }
         if (status.Problem != _problem)
         {
@@ -142,8 +126,9 @@ bool Tell(const Options &options, const RecordingStatus &status)
     else
     {
         Output::Line(Counted(status) + ", " +
-                     (status.Files == 1 ? options.Folder + "/" + status.LastFile
-                                        : std::to_string(status.Files) + " files in " + options.Folder));
+                     (status.Files == 1
+                          ? options.Record.Folder + "/" + status.LastFile
+                          : std::to_string(status.Files) + " files in " + options.Record.Folder));
     }
     return status.Lost.empty() && status.Problem.empty();
 }
@@ -153,7 +138,7 @@ void RemoveFile(const Options &options, const RecordingStatus &status)
 {
     if (status.Files == 1)
     {
-        FolderDisk(options.Folder).Remove(status.LastFile);
+        FolderDisk(options.Record.Folder).Remove(status.LastFile);
     }
 }
 
@@ -186,21 +171,21 @@ void TellOfNew(const std::vector<std::string> &messages)
 int Run(const Options &options, Wakeup &wakeup)
 {
     GatewayConfig config = ConfigOf(options.Common);
-    if (const std::string why = WhyNoFile(options.Folder); !why.empty())
+    if (const std::string why = WhyNoFile(options.Record.Folder); !why.empty())
     {
         Output::Talk(why);
         return ProblemFound;
     }
-    config.Record = RecordSettings{.Folder = options.Folder};
-    config.Record->Except = options.Except;
+    config.Record = options.Record;
+    config.Record->SplitTime = std::chrono::milliseconds(options.SplitTime);
     config.Record->Queues = false;  // queue messages of other nodes cannot be heard
-    const auto target =
-        std::make_shared<RecordingTarget>(config.Node, *RabitClock::System(),
-                                          std::make_unique<FolderDisk>(options.Folder), SettingsOf(options));
+    const auto target = std::make_shared<RecordingTarget>(
+        config.Node, *RabitClock::System(), std::make_unique<FolderDisk>(options.Record.Folder),
+        RecordingSettings{.Name = options.Name, .Record = *config.Record});
     config.Tap = std::make_shared<QueueStreams>(target, *config.Record);
     target->Inbox().SetMetadata("rabit.node", {{"node", config.Node}, {"kind", "rabit record"}});
     config.Tool->AsksOf = FleetFollower::NodesOf(options.What);
-    if (options.Free < RecordingFiles::LeastMargin)
+    if (options.Record.Free < RecordingFiles::LeastMargin)
     {
         Output::Talk("--free: at least 16 MiB of the disk stay free, for the end of the file");
     }
@@ -255,13 +240,14 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
         app.add_subcommand("record", "What is on the network, into a file that Foxglove opens");
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any; without: all messages");
     AddCommonOptions(*command, options->Common, 5.0);
-    command->add_option("--except", options->Except, "Messages to leave out, as */CameraView");
-    command->add_option("--to", options->Folder, "Folder of the files (default: this one)");
+    command->add_option("--except", options->Record.Except, "Messages to leave out, as */CameraView");
+    command->add_option("--to", options->Record.Folder, "Folder of the files (default: this one)");
     command->add_option("--name", options->Name, "How their names begin (default: fleet)");
     command->add_option("--for", options->For, "Seconds from the first message (default: until Ctrl-C)")
         ->check(AboveZero());
     command
-        ->add_option("--split-size", options->SplitSize, "End a file at this size, as 500MB (default: 1 GiB)")
+        ->add_option("--split-size", options->Record.SplitSize,
+                     "End a file at this size, as 500MB (default: 1 GiB)")
         ->transform(Size(RecordRanges::SplitSize));
     const std::map<std::string, std::uint64_t> units{
         {"ms", 1}, {"s", 1000}, {"min", 60'000}, {"h", 3'600'000}};
@@ -272,10 +258,12 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
         ->check(CLI::Range(std::uint64_t{1000}, std::uint64_t{86'400'000}));
     command
         ->add_option(
-            "--keep", options->Keep,
+            "--keep", options->Record.Keep,
             "Size of all files of that name, as 20GB; beyond it the oldest is removed (default: no limit)")
         ->transform(Size(RecordRanges::Keep));
-    command->add_option("--free", options->Free, "Bytes of the disk that stay free, as 5GB (default: 1 GiB)")
+    command
+        ->add_option("--free", options->Record.Free,
+                     "Bytes of the disk that stay free, as 5GB (default: 1 GiB)")
         ->transform(Size(RecordRanges::Free));
     AddExamples(*command, {"rabit record uav1/Pose 'uav*/Health' --for 60",
                            "rabit record --except '*/CameraView' --name test",
@@ -284,7 +272,7 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
         [options, &chosen]
         {
             // Files are removed whole, so a smaller size keeps none but the one that is written.
-            if (options->Keep > 0 && options->Keep < options->SplitSize)
+            if (options->Record.Keep > 0 && options->Record.Keep < options->Record.SplitSize)
             {
                 throw CLI::ValidationError("--keep",
                                            "less than the size of one file; give a larger size, or a smaller "
