@@ -120,7 +120,10 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfBuffers(config, before, Doctor::LookAtMachine()));
         Append(findings, Doctor::OfMulticast(config, used, network, Doctor::NodesThatHear(fleet)));
         Append(findings, Doctor::OfOtherInterfaces(config, used, network, anyNode));
-        std::set<std::string> names;
+        // If a name is given, this program first listens under the usual one.
+        CommonOptions unnamed = options;
+        unnamed.Node.Node.clear();
+        std::set<std::string> names{ConfigOf(unnamed).Node};
         for (const FleetSession::Node &node : nodes)
         {
             names.insert(node.Name);

@@ -102,7 +102,7 @@ void FleetFollower::TellOfMissing()
     const std::vector<FleetSession::Node> nodes = _session.Nodes();
     for (Pattern &pattern : _patterns)
     {
-        if (pattern.IsChecked || _session.Seconds() < Patience ||
+        if (pattern.IsChecked || pattern.Message == "*" || _session.Seconds() < Patience ||
             !Offers::AreAllThere(nodes, pattern.Node, _session.IsEverybodyHeard()))
         {
             continue;

@@ -126,6 +126,10 @@ bool FleetSession::WaitUntilDecided(const std::function<bool()> &isDecided)
         const double everybody = SecondsToHearEverybody();
         until = everybody > until ? std::min(everybody, Patience()) : Patience();
         hasEnded = WaitUntil(until, isDecided);
+        if (Seconds() >= _options.Wait && Underway().empty() && !IsAnybodyThere())
+        {
+            break;
+        }
     }
     return hasEnded;
 }

@@ -85,7 +85,7 @@ int Run(const Options &options, Wakeup &wakeup)
         follower.FollowNew();
         follower.TellOfMissing();
         taps.Look();
-        if (!lonely && !session.IsAnybodyThere() && session.Seconds() >= options.Common.Wait)
+        if (!lonely && !session.IsAnybodyThere() && session.Seconds() >= session.Patience())
         {
             lonely = true;
             static_cast<void>(session.NobodyThere());

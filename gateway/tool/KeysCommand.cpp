@@ -100,7 +100,7 @@ std::map<int, std::size_t> DomainsOf(const Keys::FleetKeys &fleet)
     return domains;
 }
 
-// The domain in which most nodes are, if there are such; -1: none.
+// Returns the domain of the most nodes; -1 if two domains have equally many, or none has any.
 int UsualDomainOf(const Keys::FleetKeys &fleet)
 {
     const std::map<int, std::size_t> domains = DomainsOf(fleet);

@@ -198,7 +198,7 @@ int Run(const Options &options, Wakeup &wakeup)
         FleetFollower follower(session, options.What, config, config.Record->Except);
         MessageTaps taps(config, session.Workspace(), target);
         const auto end = [&]
-        { return begin ? *begin + options.For : std::max(options.For, options.Common.Wait); };
+        { return begin ? *begin + options.For : std::max(options.For, session.Patience()); };
         while (!wakeup.IsInterrupted() && session.Seconds() < end())
         {
             TellOfNew(follower.FollowNew());
@@ -209,7 +209,7 @@ int Run(const Options &options, Wakeup &wakeup)
             {
                 begin = session.Seconds();
             }
-            if (!anybody && session.Seconds() >= options.Common.Wait)
+            if (!anybody && session.Seconds() >= session.Patience())
             {
                 target->End();
                 RemoveFile(options, target->Status());

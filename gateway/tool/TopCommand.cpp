@@ -163,7 +163,7 @@ int Run(const Options &options, Wakeup &wakeup)
         const std::vector<Row> rows = Ask(session, end);
         if (wakeup.IsInterrupted())
         {
-            return Good;  // the last whole table stays
+            return options.Once ? Interrupted : Good;  // the last whole table stays
         }
         if (!options.Once && !options.Common.Json)
         {

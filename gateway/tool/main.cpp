@@ -80,7 +80,9 @@ int RunProgram(int argc, char **argv)
     CLI::App app("Looks at a fleet of Rabit nodes, and speaks to it.");
     app.set_version_flag("--version", "rabit " RABIT_VERSION_STRING);
     app.require_subcommand(1);
-    app.footer("Exit code: 0 good, 1 a problem was found, 2 wrong usage, 3 no network or nobody in it.");
+    app.footer(
+        "Exit code: 0 good, 1 a problem was found, 2 wrong usage, 3 no network or nobody in it, 130 Ctrl-C "
+        "before an answer.");
     Chosen chosen;
     AddNodesCommand(app, chosen);
     AddMessagesCommand(app, chosen);

@@ -37,16 +37,20 @@ void AddPoster(SimulatedNode &node, GatewayConfig & /*config*/)
     node.Reactor.AddManager(std::make_unique<Poster>(node.Workspace));
 }
 
-std::uint32_t PosesHeard(std::uint64_t seed)
+// The numbers of the poses that arrive at the ground station.
+std::vector<std::uint32_t> PosesHeard(std::uint64_t seed)
 {
     SimulatedFleet fleet(seed);
     fleet.Network.SetFaults("*", "*", {.Loss = 0.4});
     fleet.Add(AircraftConfig("uav1"), AddPoster);
     SimulatedNode &ground = fleet.Add(GroundConfig());
-    fleet.RunFor(30s);
-    const Gateway::Fleet heard = ground.Fleet();
-    const Gateway::NodeStatus *uav = Gateway::FindNode(heard, "uav1");
-    return uav == nullptr ? 0 : static_cast<std::uint32_t>(uav->messages_received);
+    std::vector<std::uint32_t> heard;
+    for (int i = 0; i < 100; ++i)
+    {
+        fleet.RunFor(100ms);
+        heard.push_back(ground.Newest<Uav::Pose>("uav1/Pose").number);
+    }
+    return heard;
 }
 
 TEST(SimulatedFleet, RunsTheManagersOfAllNodes)

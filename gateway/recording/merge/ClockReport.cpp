@@ -13,7 +13,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-// What reads throws an exception if something is missing or of another kind.
+// The functions that read throw an exception if something is missing or of another kind.
 
 // 64-bit numbers are texts, for readers that know floating point alone.
 template <typename Number>

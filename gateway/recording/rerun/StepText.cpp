@@ -24,7 +24,7 @@ constexpr std::array StepWords = {"startup", "unit of work", "shutdown"};
 constexpr std::array KindWords = {"monotonic", "gps_time", "fetched", "posted",
                                   "taken",     "added",    "refused", "listed"};
 
-// What reads throws an exception if the text is not of that kind.
+// The functions that read throw an exception if the text is not of that kind.
 
 template <typename Number>
 Number NumberOf(const Json &json)

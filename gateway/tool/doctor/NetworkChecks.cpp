@@ -217,7 +217,7 @@ std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &fac
         }
     }
     const std::string there = " in domain " + std::to_string(config.Domain);
-    // Of plain DDS programs this program hears nothing.
+    // `heard` never has plain DDS programs.
     const std::set<std::string> nodes = heard.empty() ? with : NodesWithKeys(config.Domain, facts);
     std::set<std::string> out;
     std::set_difference(nodes.begin(), nodes.end(), heard.begin(), heard.end(),

@@ -156,7 +156,7 @@ public:
         : _interfaces(used),
           _unused(unused),
           _ownName(std::move(ownName)),
-          _domain(callIn.front()),
+          _domain(callIn.empty() ? -1 : callIn.front()),
           _end(::eventfd(0, EFD_CLOEXEC))
     {
         std::random_device random;
@@ -335,7 +335,7 @@ private:
             waits.push_back({ear.Where.Get(), POLLIN, 0});
         }
         using Clock = std::chrono::steady_clock;
-        int called = 1;
+        int called = _domain < 0 ? Calls : 1;
         auto callAt = Clock::now() + BetweenCalls;
         const auto timeout = [&]() -> int
         {

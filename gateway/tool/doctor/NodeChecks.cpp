@@ -94,6 +94,11 @@ std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const
                                 "it beats, and its announcement does not come",
                                 "wait longer (--wait), or look whether what this machine sends gets there"});
         }
+        else if (!node.AreProblemsKnown)
+        {
+            findings.push_back({Level::Note, "node " + node.Name, "its own problems are not known yet",
+                                "wait longer (--wait)"});
+        }
     }
     for (const Gateway::Problem &problem : fleet.problems)
     {

@@ -137,6 +137,7 @@ private:
             if (!_manager.AddPublishSubscribeMessage("Gateway/Fleet", _fleet))
             {
                 _looksInVain = LooksBeforeWarning + 1;
+                return;
             }
         }
         _fleet->FetchMessage();

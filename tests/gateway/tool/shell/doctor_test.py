@@ -8,7 +8,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 
 from two_aircraft import LIMIT, SWARM, Rabit, harness, is_well, keys, main
 
@@ -78,12 +77,18 @@ def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_ther
     assert done.returncode == 3 and "! interface nosuch0: this machine has none. Do: name one of " in done.stdout, done
 
 
+def takes_interrupts(process):
+    status = pathlib.Path(f"/proc/{process}/status").read_text()
+    masks = [int(mask, 16) for mask in re.findall(r"^Sig(?:Blk|Cgt):\s*([0-9a-f]+)", status, re.MULTILINE)]
+    sockets = [entry for entry in pathlib.Path(f"/proc/{process}/fd").iterdir() if "socket:" in str(entry.readlink())]
+    return any(mask & 1 << signal.SIGINT - 1 for mask in masks) and len(sockets) > 2
+
+
 def a_doctor_that_is_interrupted_has_no_report(rabit):
     with subprocess.Popen(rabit.argv("doctor", "--wait", "60"), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True) as doctor:
-        # Its socket for the announcements of domain 200 is open.
-        harness.until(lambda: f":{7400 + 250 * 200:04X} " in pathlib.Path("/proc/net/udp").read_text())
-        time.sleep(1)
+        # A program that takes SIGINT itself has blocked it, or waits for it, before it joins the network.
+        harness.until(lambda: takes_interrupts(doctor.pid))
         doctor.send_signal(signal.SIGINT)
         shown, told = doctor.communicate(timeout=LIMIT)
     assert doctor.returncode == 130 and shown == "" and re.search("interrupted after .* of 60 s", told), (shown, told)
