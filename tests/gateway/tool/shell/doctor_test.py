@@ -87,7 +87,7 @@ def takes_interrupts(process):
 def a_doctor_that_is_interrupted_has_no_report(rabit):
     with subprocess.Popen(rabit.argv("doctor", "--wait", "60"), stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           text=True) as doctor:
-        # A program that takes SIGINT itself has blocked it, or waits for it, before it joins the network.
+        # The program blocks SIGINT, for a thread that waits for it, before it opens sockets.
         harness.until(lambda: takes_interrupts(doctor.pid))
         doctor.send_signal(signal.SIGINT)
         shown, told = doctor.communicate(timeout=LIMIT)
