@@ -241,7 +241,7 @@ std::vector<std::string> FleetKeys::Revoked() const
     std::map<std::string, bool> areRevoked;
     for (const std::string &file : Issued())
     {
-        const CertificatePtr certificate = ReadCertificate(ReadFile(file), file);
+        const CertificatePtr certificate = CertificateIn(file);
         bool &all = areRevoked.try_emplace(SubjectOf(*certificate).Node, true).first->second;
         all = all && IsRevoked(*revoked, *certificate);
     }

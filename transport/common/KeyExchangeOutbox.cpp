@@ -173,6 +173,10 @@ void KeyExchangeOutbox::PutHandshake(Peer &peer, Datagram datagram, const KeyExc
     {
         if (peer.Rest.size() < MostDatagrams)
         {
+            if (_repeatsFinal && peer.Said == Step::Final)
+            {
+                peer.SaidFinal.push_back(datagram);
+            }
             peer.Rest.push_back(std::move(datagram));
         }
         return;
@@ -227,16 +231,14 @@ bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
     {
         peer.Waiting.reset();
     }
-    if (what.What == Step::Reply && peer.Said == Step::Final && !peer.SaidFinal.empty() &&
-        (!peer.Waiting || peer.Waiting->Number == peer.SaidNumber))
+    if (what.What == Step::Reply && peer.Said == Step::Final && !peer.SaidFinal.empty() && !peer.Waiting)
     {
-        const Turn place = peer.Waiting ? peer.Waiting->Place : ++_turn;
         peer.Waiting = Message{.What = Step::Final,
                                .Number = peer.SaidNumber,
                                .Datagrams = peer.SaidFinal,
                                .Since = now,
                                .Due = now + FinalDelay,
-                               .Place = place};
+                               .Place = ++_turn};
     }
     if (Answers(peer.Said, what.What))
     {

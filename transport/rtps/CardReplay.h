@@ -55,6 +55,7 @@ public:
     // The name that the peer's announcement gives it; empty: none.
     std::string NameOf(const GuidPrefix &peer) const;
     std::vector<GuidPrefix> Peers() const;
+    std::size_t Size() const { return _peers.size(); }
 
     // Repeats everything of that peer, after a message to the implementation was lost. Does nothing while a
     // replay is in progress.

@@ -3,11 +3,11 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <optional>
 #include <set>
 #include <vector>
 
+#include "common/RecentMap.h"
 #include "common/RecentRoutes.h"
 #include "guard/RtpsMessage.h"
 
@@ -29,9 +29,9 @@ public:
     // The implementation sends to that participant alone.
     void Note(const GuidPrefix &to, const Route &route)
     {
-        if (to != GuidPrefix{} && (_toOne.size() < Most || _toOne.contains(to)))
+        if (to != GuidPrefix{})
         {
-            _toOne.insert_or_assign(to, route);
+            _toOne.Put(to, route);
         }
     }
     // The implementation announces its participant to a group, or to a listed peer (RecentRoutes).
@@ -42,10 +42,9 @@ public:
     // The routes to a participant, or to all if it is empty or not known.
     std::vector<Route> To(const std::optional<GuidPrefix> &participant, TimePoint now)
     {
-        const auto one = participant ? _toOne.find(*participant) : _toOne.end();
-        if (one != _toOne.end())
+        if (const Route *const one = participant ? _toOne.Find(*participant) : nullptr)
         {
-            return {one->second};
+            return {*one};
         }
         std::vector<Route> routes = _listed.Current(now);
         routes.insert(routes.begin(), _groups.begin(), _groups.end());
@@ -53,7 +52,7 @@ public:
     }
 
 private:
-    std::map<GuidPrefix, Route> _toOne;
+    RecentMap<GuidPrefix, Route> _toOne{Most};
     std::set<Route, Less> _groups;
     RecentRoutes<Route, Less> _listed;
 };

@@ -181,7 +181,7 @@ std::vector<Meeting::Local> Meeting::TakeLocal(TimePoint now)
 
 std::vector<GuidPrefix> Meeting::Endable() const
 {
-    if (_replay.Peers().size() > MostSilent)
+    if (_replay.Size() > MostSilent)
     {
         return _replay.Peers();
     }

@@ -95,6 +95,7 @@ public:
     // Participants to be ended once they are silent for EndAfter(): former sessions of nodes that have
     // another one, and all if there are more than MostSilent.
     std::vector<GuidPrefix> Endable() const;
+    bool AnyEndable() const { return _replay.Size() > MostSilent || !_superseded.empty(); }
     // Two and a half periods: a living participant has announced itself twice.
     Duration EndAfter() const { return 5 * _settings.Period / 2; }
     void End(const GuidPrefix &peer);

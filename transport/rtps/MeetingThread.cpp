@@ -114,7 +114,7 @@ std::optional<MeetingThread::Clock::time_point> MeetingThread::Due()
 {
     const bool waitsForTurn = _turns->IsScheduled() && _turns->IsDue();
     return Earliest({_meeting.LocalDue(), waitsForTurn ? std::nullopt : _meeting.NetworkDue(),
-                     _meeting.Endable().empty() ? std::nullopt : std::optional(_lookAt)});
+                     _meeting.AnyEndable() ? std::optional(_lookAt) : std::nullopt});
 }
 
 void MeetingThread::Work(std::unique_lock<std::mutex> &lock)

@@ -12,6 +12,8 @@ namespace
 
 // After this many bytes of unanswered probes the next probes are smaller: others need the air.
 constexpr std::size_t BytesInVain = 2'000;
+// After more unanswered probes than this a path that starts holds up no other one.
+constexpr int LongEnoughForStart = 2;
 
 }  // namespace
 
@@ -155,6 +157,10 @@ void LinkSender::OnProbeTimer()
     {
         _doublings = std::max(_doublings + 1, std::min(_probesInVain, PathControl::ProbesInVain));
         ++_counters.Timeouts;
+        if (_doublings > LongEnoughForStart)
+        {
+            _path.LeaveStart();
+        }
     }
 }
 

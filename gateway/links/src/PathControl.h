@@ -51,6 +51,13 @@ public:
     void Answered(LinkTime time);
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
+    // Several probes are unanswered: what is under way is lost, or nobody is there, and holds up no other
+    // path.
+    void LeaveStart()
+    {
+        _starting -= _starts ? _inFlight : 0;
+        _starts = false;
+    }
 
     // True if the window has room for another datagram, or the larger part of one.
     bool HasRoom() const;

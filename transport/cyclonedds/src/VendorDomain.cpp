@@ -76,6 +76,8 @@ bool VendorDomain::HasKeysOf(const Rtps::GuidPrefix &participant)
 
 void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
 {
+    // First of all, so that no announcement comes in between.
+    _goodbyes->Note(participant, std::chrono::steady_clock::now());
     std::vector<std::uint8_t> goodbye;
     {
         const std::lock_guard lock(_cardMutex);
@@ -83,7 +85,6 @@ void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
     }
     SendCard(participant, goodbye);
     SendCard(std::nullopt, goodbye);
-    _goodbyes->Note(participant, std::chrono::steady_clock::now());
     const ddsi_guid_t guid = ParticipantOf(participant);
     RabitCycloneForget(_watch, &guid);
 }

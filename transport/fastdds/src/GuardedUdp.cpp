@@ -276,10 +276,11 @@ private:
     void Forget(const GuidPrefix &peer, std::int64_t number)
     {
         const std::vector<std::uint8_t> own = OwnAnnouncement();
+        // First of all, so that no announcement comes in between.
+        _descriptor.Chosen().Goodbyes->Note(peer, std::chrono::steady_clock::now());
         const auto ours = GoodbyeAfter(own, peer);
         SendCard(peer, ours);
         SendCard(std::nullopt, ours);
-        _descriptor.Chosen().Goodbyes->Note(peer, std::chrono::steady_clock::now());
         auto theirs = GoodbyeOf(peer, own, number);
         if (const Receiver receiver = LastReceiver(); receiver.Next != nullptr)
         {

@@ -243,18 +243,19 @@ std::string SessionCore::NameOfNewcomer(const Rtps::GuidPrefix &peer) const
 
 void SessionCore::PeerGone(const Rtps::GuidPrefix &peer, PeerEvent::Kind how)
 {
+    const bool isForgotten = _authentication->WasForgotten(peer);
     if (how == PeerEvent::Kind::Lost)
     {
         _meeting->Lost(peer);
     }
-    else if (_meeting->WasEnded(peer) || _authentication->WasForgotten(peer))
+    else if (_meeting->WasEnded(peer) || isForgotten)
     {
         how = PeerEvent::Kind::Lost;
     }
     _authentication->Gone(peer);
     {
         const std::lock_guard lock(_provenMutex);
-        if (_authentication->WasForgotten(peer))
+        if (isForgotten)
         {
             Log()->AuthenticationFailed(NameOfNewcomer(peer));
         }
