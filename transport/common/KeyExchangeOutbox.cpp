@@ -231,14 +231,16 @@ bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
     {
         peer.Waiting.reset();
     }
-    if (what.What == Step::Reply && peer.Said == Step::Final && !peer.SaidFinal.empty() && !peer.Waiting)
+    if (what.What == Step::Reply && peer.Said == Step::Final && !peer.SaidFinal.empty() &&
+        (!peer.Waiting || peer.Waiting->Number == peer.SaidNumber))
     {
+        const Turn place = peer.Waiting ? peer.Waiting->Place : ++_turn;
         peer.Waiting = Message{.What = Step::Final,
                                .Number = peer.SaidNumber,
                                .Datagrams = peer.SaidFinal,
                                .Since = now,
                                .Due = now + FinalDelay,
-                               .Place = ++_turn};
+                               .Place = place};
     }
     if (Answers(peer.Said, what.What))
     {
