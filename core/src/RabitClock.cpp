@@ -74,9 +74,12 @@ std::chrono::nanoseconds RabitClock::ToNanoseconds(double gpsTimeSeconds)
 {
     constexpr double most = 9e9;  // the nanoseconds of it fit 63 bits
     const double bounded = std::isnan(gpsTimeSeconds) ? 0.0 : std::clamp(gpsTimeSeconds, -most, most);
-    const double whole = std::floor(bounded);
-    return std::chrono::seconds(static_cast<std::int64_t>(whole)) +
-           std::chrono::nanoseconds(std::llround((bounded - whole) * 1e9));
+    // By hand: std::floor and std::llround are calls, and each post of another clock's time comes here.
+    const auto truncated = static_cast<std::int64_t>(bounded);
+    const std::int64_t whole = static_cast<double>(truncated) > bounded ? truncated - 1 : truncated;
+    const double rest = bounded - static_cast<double>(whole);
+    return std::chrono::seconds(whole) +
+           std::chrono::nanoseconds(static_cast<std::int64_t>(rest * 1e9 + 0.5));
 }
 
 ManualClock::ManualClock(double gpsTimeSeconds, std::chrono::nanoseconds monotonic)

@@ -158,7 +158,7 @@ void AirTraffic::SetLimit(Duration now)
     _limitSetAt = now;
     const Duration discoveryLate = _turns != nullptr ? _turns->QueueingDelay() : Duration(0);
     _presence.HeardLate(discoveryLate);
-    _estimate.HeardLate(discoveryLate, _presence.QueueingDelay(now), now);
+    _estimate.HeardLate(discoveryLate, _presence.LongDelay(now), now);
     const std::optional<double> carried = _estimate.Rate(now);
     const std::optional<double> budget = _config.Radio.Budget;
     _presence.SetBeatPeriod(BeatShare::PeriodOf(_beatBytes, budget, _config.Radio.SlowestBeat, carried));

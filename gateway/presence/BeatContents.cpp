@@ -38,6 +38,11 @@ void BeatContents::Begin(std::vector<std::uint8_t> offers, std::size_t states)
 
 std::optional<BeatContents::Duration> BeatContents::QuestionDue() const
 {
+    // Usually there is none, and each unit of work asks.
+    if (_peers.Missing().IsEmpty() && _questions.IsEmpty() && _types.IsEmpty())
+    {
+        return std::nullopt;
+    }
     return Earliest({_peers.Missing().NextDue(), _questions.DueSince(), _types.NextDue()});
 }
 

@@ -36,6 +36,7 @@ bool DelayNotes::Note(Tag node, Duration delay, Duration arrival)
     entry.Delay = delay;
     entry.Arrival = arrival;
     entry.IsNew = true;
+    _longAt = delay > LongDelay ? arrival : _longAt;
     return delay >= Large;
 }
 

@@ -37,6 +37,7 @@ public:
     static constexpr std::size_t MostNodes = 1000;
     static constexpr Duration Lately = std::chrono::seconds(3);  // newer notes count in Delay()
     static constexpr Duration LongestQueue = std::chrono::seconds(2);
+    static constexpr Duration LongDelay = std::chrono::seconds(1);
 
     // Sets the time between this node's beats.
     void SetBeatPeriod(Duration period)
@@ -52,6 +53,8 @@ public:
     // HeardLate if it is longer. At most LongestQueue, so that a clock that stood still holds nothing up for
     // long.
     Duration Delay(Duration now) const;
+    // The same if a datagram came later than LongDelay lately; else 0. Costs nothing where all come in time.
+    Duration LongDelayOnly(Duration now) const { return now - _longAt < Lately ? Delay(now) : Duration(0); }
     // Number of delays to report now, at most `most`.
     std::size_t Due(Duration now, std::size_t most) const;
     // Takes at most `most` delays to report now; the nodes take turns.
@@ -71,6 +74,7 @@ private:
 
     Duration _smallPeriod = SmallPeriod;
     Duration _heardLate{0};
+    Duration _longAt = -Lately;  // the last delay above LongDelay
     std::map<Tag, Entry> _notes;
     Tag _last = 0;
 };

@@ -150,8 +150,8 @@ public:
     void NoteDelay(std::string_view node, Duration delay, Duration arrivedAt);
     // DelayNotes::HeardLate
     void HeardLate(Duration delay) { _contents.Delays().HeardLate(delay); }
-    // DelayNotes::Delay
-    Duration QueueingDelay(Duration now) { return _contents.Delays().Delay(now); }
+    // DelayNotes::LongDelayOnly
+    Duration LongDelay(Duration now) { return _contents.Delays().LongDelayOnly(now); }
 
     const PeerTable &Peers() const { return _peers; }
     // Number of samples of the gateways' topics that were malformed, or found the inbox full.

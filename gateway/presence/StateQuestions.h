@@ -31,6 +31,7 @@ public:
     };
     // Since when the oldest request marked `soon` waits; empty: none waits.
     std::optional<Duration> DueSince() const;
+    bool IsEmpty() const { return _wanted.empty(); }
     // The questions of the next beat; the nodes take turns.
     std::vector<Question> Take(std::size_t most);
     // Number of nodes with a request, at most `most`; and the bytes of the longest question.

@@ -12,6 +12,7 @@ namespace Rabit
 LinkDriver::Duration LinkDriver::Service()
 {
     LinkTime next = LinkNever;
+    bool large = false;
     News &news = OwnNews();
     {
         const std::lock_guard lock(_mutex);
@@ -19,10 +20,14 @@ LinkDriver::Duration LinkDriver::Service()
         _links->Run(Now());
         _sending.Swap(_outbox);
         next = _nextService = _links->NextDue();
+        large = _incoming.AnyUndecoded();
         TakeNews(news);
     }
     Tell(news);
-    DecodeLarge(news);
+    if (large)
+    {
+        DecodeLarge(news);
+    }
     news.Clear();
     WriteOut();
     return next;
@@ -54,6 +59,7 @@ void LinkDriver::WriteOut()
 LinkDriver::Duration LinkDriver::Advance()
 {
     LinkTime next = LinkNever;
+    bool large = false;
     News &news = OwnNews();
     {
         const std::lock_guard lock(_mutex);
@@ -61,10 +67,14 @@ LinkDriver::Duration LinkDriver::Advance()
         _links->Advance(Now());
         next = _links->NextDue();
         _nextService = LinkNever;
+        large = _incoming.AnyUndecoded();
         TakeNews(news);
     }
     Tell(news);
-    DecodeLarge(news);
+    if (large)
+    {
+        DecodeLarge(news);
+    }
     news.Clear();
     return next;
 }
