@@ -169,15 +169,14 @@ void VendorDomain::Gone(const Rtps::GuidPrefix &participant)
         }
         left = std::move(found->second);
         _reached.erase(found);
-        for (const auto &[other, places] : _reached)
+        for (const auto &other : _reached)
         {
-            std::erase_if(left,
-                          [&places](const RabitCyclonePlace &place)
-                          {
-                              return std::find_if(places.begin(), places.end(),
-                                                  [&](const RabitCyclonePlace &each)
-                                                  { return IsSame(each, place); }) != places.end();
-                          });
+            const auto isThere = [&other](const RabitCyclonePlace &place)
+            {
+                return std::any_of(other.second.begin(), other.second.end(),
+                                   [&](const RabitCyclonePlace &each) { return IsSame(each, place); });
+            };
+            std::erase_if(left, isThere);
         }
     }
     for (const RabitCyclonePlace &place : left)
