@@ -158,6 +158,8 @@ void AirTraffic::SetLimit(Duration now)
     _limitSetAt = now;
     const Duration discoveryLate = _turns != nullptr ? _turns->QueueingDelay() : Duration(0);
     _presence.HeardLate(discoveryLate);
+    static_assert(DelayNotes::LongDelay <= CapacityEstimate::LongWait,
+                  "the estimate hears of each long wait");
     _estimate.HeardLate(discoveryLate, _presence.LongDelay(now), now);
     const std::optional<double> carried = _estimate.Rate(now);
     const std::optional<double> budget = _config.Radio.Budget;
