@@ -57,7 +57,7 @@ void AddEntries(const char *kind, std::vector<TopicAccess> topics, std::string &
     }
 }
 
-std::string TextOf(const XMLElement *element)
+std::string ElementText(const XMLElement *element)
 {
     const char *text = element == nullptr ? nullptr : element->GetText();
     return text == nullptr ? "" : text;
@@ -69,7 +69,7 @@ std::vector<std::string> TextsIn(const XMLElement *list, const char *name)
     for (const XMLElement *one = list == nullptr ? nullptr : list->FirstChildElement(name); one != nullptr;
          one = one->NextSiblingElement(name))
     {
-        texts.push_back(TextOf(one));
+        texts.push_back(ElementText(one));
     }
     return texts;
 }
@@ -201,12 +201,12 @@ std::vector<Permissions> ReadPermissions(const std::string &text, const std::str
          one = one->NextSiblingElement("grant"))
     {
         Permissions grant;
-        grant.Subject = TextOf(one->FirstChildElement("subject_name"));
+        grant.Subject = ElementText(one->FirstChildElement("subject_name"));
         const XMLElement *validity = one->FirstChildElement("validity");
         if (validity != nullptr)
         {
-            grant.From = TextOf(validity->FirstChildElement("not_before"));
-            grant.To = TextOf(validity->FirstChildElement("not_after"));
+            grant.From = ElementText(validity->FirstChildElement("not_before"));
+            grant.To = ElementText(validity->FirstChildElement("not_after"));
         }
         for (const XMLElement *rule = one->FirstChildElement(); rule != nullptr;
              rule = rule->NextSiblingElement())
@@ -217,7 +217,7 @@ std::vector<Permissions> ReadPermissions(const std::string &text, const std::str
                 grant.Rules.push_back(RuleOf(*rule, file));
             }
         }
-        grant.AllowsTheRest = TextOf(one->FirstChildElement("default")) == "ALLOW";
+        grant.AllowsTheRest = ElementText(one->FirstChildElement("default")) == "ALLOW";
         grants.push_back(std::move(grant));
     }
     if (grants.empty())
