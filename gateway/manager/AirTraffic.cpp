@@ -39,21 +39,25 @@ std::size_t LargestDatagramOf(const GatewayConfig &config)
 }  // namespace
 
 AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence,
-                       LinkDriver &links, std::deque<TopicPublisher> &publishers, TypeExchange &types)
+                       LinkDriver &links, std::deque<TopicPublisher> &publishers, TypeExchange &types,
+                       const PathChoice &choice, std::size_t path)
     : _config(config),
       _clock(clock),
       _presence(presence),
       _links(links),
       _publishers(publishers),
       _types(types),
+      _choice(choice),
+      _path(path),
       _cost(config.MaxDatagram),
       _schedule(LargestDatagramOf(config)),
       _unscheduled(TransportSettingsOf(config, 0).AnnouncementPeriod),
       _beat(_schedule.AddStream(TrafficClass::Presence, AirSchedule::LargestWeight)),
       _typeTexts(_schedule.AddStream(TrafficClass::Bulk)),
       _cards(_schedule.AddStream(TrafficClass::State, AirSchedule::LargestWeight)),
-      _linkStreams(config.Send, links, _schedule,
-                   [&presence](std::string_view node) { return presence.SessionsOf(node); }),
+      _linkStreams(
+          config.Send, links, _schedule,
+          [&presence](std::string_view node) { return presence.SessionsOf(node); }, choice, path),
       _report(config, _cost)
 {
 }
@@ -83,7 +87,7 @@ void AirTraffic::Open(TransportSession &session)
 
 Duration AirTraffic::Serve(Duration now)
 {
-    if (now - _watchedAt >= WatchPeriod || IsLimited())
+    if (now - _watchedAt >= WatchPeriod || IsScheduled())
     {
         Watch(now);
     }
@@ -91,7 +95,7 @@ Duration AirTraffic::Serve(Duration now)
     {
         SetLimit(now);
     }
-    return IsLimited() ? ServeLimited() : ServeUnlimited(now);
+    return IsScheduled() ? ServeLimited() : ServeUnlimited(now);
 }
 
 void AirTraffic::Reported(CapacityEstimate::Peer peer, Duration delay, Duration arrivedAt, Duration now)
@@ -131,7 +135,7 @@ void AirTraffic::Watch(Duration now)
         return;
     }
     // Without a limit these bytes were sent when this node last served its streams, which may be long ago.
-    _estimate.Sent(bytes, IsLimited() ? now : std::max(_servedAt, before));
+    _estimate.Sent(bytes, IsScheduled() ? now : std::max(_servedAt, before));
     if (IsLimited())
     {
         _unscheduled.Add(bytes, before, now);
@@ -196,7 +200,7 @@ Duration AirTraffic::ServeUnlimited(Duration now)
 // certainly makes this node LOST at its peers: the beat is sent, whatever the pace.
 void AirTraffic::KeepPromise(Duration now)
 {
-    if (!_config.Radio.Budget && now >= _presence.BeatPromised())
+    if (IsLimited() && !_config.Radio.Budget && now >= _presence.BeatPromised())
     {
         SendBeat(_cost.BodyWithin(AirBudget::SmallestDatagram, false), now);
         const std::size_t bytes = TakeSent();
@@ -268,9 +272,10 @@ Duration AirTraffic::ServeLimited()
     const Duration linksDue = _links.Advance();
     const Duration now = Now();
     LookAtBeat(now);
+    const bool carries = _choice.CarriesAny(_path);
     for (std::size_t i = 0; i < _publishers.size(); ++i)
     {
-        LookAt(i, now);
+        carries ? LookAt(i, now) : _schedule.NotReady(_publisherStreams[i]);
     }
     LookAtTypes(now);
     LookAtCards();
@@ -289,7 +294,7 @@ Duration AirTraffic::ServeLimited()
     next = types > now ? std::min(next, types) : next;
     for (const TopicPublisher &publisher : _publishers)
     {
-        const Duration due = publisher.DueAt(now);
+        const Duration due = carries ? publisher.DueAt(now) : now;
         next = due > now ? std::min(next, due) : next;
     }
     _links.WillServe(next);

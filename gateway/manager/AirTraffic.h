@@ -20,6 +20,7 @@
 #include "manager/LinkStreams.h"
 #include "manager/TypeExchange.h"
 #include "mirrors/TopicPublisher.h"
+#include "paths/PathChoice.h"
 #include "presence/Presence.h"
 #include "queues/LinkDriver.h"
 
@@ -48,9 +49,10 @@ class AirTraffic
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // References must outlive the object.
+    // Of the path with that number. References must outlive the object.
     AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence, LinkDriver &links,
-               std::deque<TopicPublisher> &publishers, TypeExchange &types);
+               std::deque<TopicPublisher> &publishers, TypeExchange &types, const PathChoice &choice,
+               std::size_t path);
 
     // From now on the session's exchange of cards waits for Serve. To be called as soon as the session
     // exists. `wakeUp`: called, on any thread, when Serve is to be called before the time that it returned.
@@ -78,6 +80,8 @@ public:
 
 private:
     bool IsLimited() const { return !_schedule.Budget().IsUnlimited(); }
+    // Of several paths each sends only what goes to the nodes that it carries, which the schedule chooses.
+    bool IsScheduled() const { return IsLimited() || _choice.Paths() > 1; }
     // Bytes sent since the last call.
     std::size_t TakeSent();
     void LookAtDiscovery(std::uint64_t sent);
@@ -102,6 +106,8 @@ private:
     LinkDriver &_links;
     std::deque<TopicPublisher> &_publishers;
     TypeExchange &_types;
+    const PathChoice &_choice;
+    const std::size_t _path;
     const AirCost _cost;
     TransportSession *_session = nullptr;
     DiscoveryTurns *_turns = nullptr;  // of the session

@@ -211,7 +211,7 @@ Exploration::Requests Exploration::TakeRequests()
     return requests;
 }
 
-void Exploration::SetNodes(const PeerTable &peers, const ProblemTexts &problems, const PostTime &now)
+void Exploration::SetNodes(const PeersOverPaths &peers, const ProblemTexts &problems, const PostTime &now)
 {
     std::vector<Node> nodes;
     const std::vector<const PeerTable::Peer *> heard = peers.Heard();

@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "presence/PeerTable.h"
+#include "paths/PeersOverPaths.h"
 #include "report/ProblemTexts.h"
 #include "types/TypeQuestions.h"
 #include "wire/NodeReports.h"
@@ -55,7 +55,7 @@ public:
     };
     // Gateway's thread only, as those that follow.
     Requests TakeRequests();
-    void SetNodes(const PeerTable &peers, const ProblemTexts &problems, const PostTime &now);
+    void SetNodes(const PeersOverPaths &peers, const ProblemTexts &problems, const PostTime &now);
     void AddText(std::uint64_t definition, std::string text);
     void AddReport(const std::string &node, NodeReports::Name name, Answer answer);
     void FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session);

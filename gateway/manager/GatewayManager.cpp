@@ -17,17 +17,14 @@
 #include "foreign/ForeignTopics.h"
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
-#include "manager/AirTraffic.h"
 #include "manager/Exploration.h"
-#include "manager/NodeSecurity.h"
+#include "manager/GatewayPath.h"
 #include "manager/TransportSettingsOf.h"
-#include "manager/TypeExchange.h"
-#include "mirrors/StateExchange.h"
 #include "mirrors/Subscriptions.h"
-#include "mirrors/TopicPublisher.h"
 #include "names/NamePattern.h"
+#include "paths/PathChoice.h"
+#include "paths/PeersOverPaths.h"
 #include "presence/OriginTable.h"
-#include "presence/Presence.h"
 #include "presence/RemoteQueues.h"
 #include "presence/Whereabouts.h"
 #include "queues/LinkDriver.h"
@@ -36,12 +33,10 @@
 #include "report/FleetReport.h"
 #include "report/HandlerWatch.h"
 #include "report/LinkStrains.h"
-#include "report/Loneliness.h"
 #include "report/OtherGateways.h"
 #include "report/OwnLog.h"
 #include "report/ProblemLog.h"
 #include "report/ProblemTexts.h"
-#include "wire/Announcements.h"
 #include "wire/NodeReports.h"
 
 namespace Rabit
@@ -56,8 +51,6 @@ constexpr Duration FleetPeriod = std::chrono::seconds(1);
 constexpr Duration ShortestFleetGap = std::chrono::milliseconds(100);
 // Shorter sleeps are not worth it.
 constexpr Duration ShortestSleep = std::chrono::microseconds(200);
-// A round trip that a radio with a low rate alone may cause.
-constexpr Duration ShortWays = std::chrono::milliseconds(100);
 
 // Name of the file that counts the incarnations of this node. Two gateways of one node count separately.
 std::string CounterName(const GatewayConfig &config)
@@ -74,6 +67,17 @@ std::string LogNameOf(const GatewayConfig &config, const RabitWorkspace &workspa
            (config.Name == GatewayConfig().Name ? ": " : " " + config.Name + ": ");
 }
 
+std::vector<std::shared_ptr<Transport>> Checked(std::vector<std::shared_ptr<Transport>> transports,
+                                                std::size_t paths)
+{
+    if (transports.size() != paths ||
+        std::find(transports.begin(), transports.end(), nullptr) != transports.end())
+    {
+        throw std::invalid_argument("GatewayManager needs a transport for each path");
+    }
+    return transports;
+}
+
 const GatewayConfig &Validated(const GatewayConfig &config)
 {
     ValidateGatewayConfig(config);
@@ -88,21 +92,21 @@ class GatewayManager::Parts
 public:
     // The object exists once the delegate returns. So if Open throws, whatever it is, the destructor closes
     // what was opened, endpoints before the session.
-    Parts(const GatewayConfig &config, std::shared_ptr<Transport> transport, GatewayManager &manager,
-          const RandomSource &random, Exploration &exploration)
-        : Parts(Closed(), config, std::move(transport), manager, random, exploration)
+    Parts(const GatewayConfig &config, const std::vector<std::shared_ptr<Transport>> &transports,
+          GatewayManager &manager, const RandomSource &random, Exploration &exploration)
+        : Parts(Closed(), config, transports, manager, random, exploration)
     {
         Open();
     }
 
     ~Parts() { Close(); }
 
-    bool IsOpen() const { return _session != nullptr; }
+    bool IsOpen() const { return _isOpen; }
 
     // Leaves the network, for good.
     void Close()
     {
-        if (!_session)
+        if (!std::exchange(_isOpen, false))
         {
             return;
         }
@@ -111,13 +115,17 @@ public:
             _workspace.RemoveQueueForwarder(_config.Name);
         }
         ReportUndelivered();
-        _presence.Close();
+        for (const auto &path : _paths)
+        {
+            path->SayGoodbye();
+        }
         _subscriptions.Close();
         _foreign.Close();
         _links.Close();
-        _air.Close();
-        _publishers.clear();
-        _session.reset();
+        for (const auto &path : _paths)
+        {
+            path->Close();
+        }
         if (_handlers)
         {
             _handlers->Stop();
@@ -128,51 +136,36 @@ public:
     Duration Service()
     {
         const Duration now = Now();
-        const Presence::Served &served = _presence.Service(now);
-        const PeerTable::Change &change = served.Change;
-        _types.TakeIn(served, now);
+        Heard change;
+        for (std::size_t path = 0; path < _paths.size(); ++path)
+        {
+            const PeerTable::Change &heard = _paths[path]->TakeIn(now).Change;
+            if (heard.Any())
+            {
+                TakeIn(path, heard, change, now);
+            }
+        }
+        if (_paths.size() > 1)
+        {
+            ChoosePaths(change, now);
+        }
+        if (change.Offers || change.NewLife)
+        {
+            MatchSubscriptions();
+        }
         if (_exploration.IsWanted())
         {
             Explore(change, now);
         }
-        for (const std::string &node : change.Forgotten)
+        Duration next = _foreign.Service(now);
+        for (const auto &path : _paths)
         {
-            _links.Forget(node);
-            _outgoing->Forget(node);
+            next = std::min(next, path->Send(now));
         }
-        _states.Serve(served, _publishers, now);
-        if (change.NewLife)
+        if (_paths.size() > 1)
         {
-            for (const PeerTable::Peer *peer : _presence.Peers().Heard())
-            {
-                _links.HeardOf(peer->Node, peer->Incarnation);
-            }
-        }
-        for (const Presence::DelayHeard &delay : served.Delays)
-        {
-            // On a long path datagrams are sent while a report is under way. It is not about these, so its
-            // way is subtracted.
-            const Duration ways = _links.ShortestRoundTrip(delay.Node);
-            const Duration known = std::max(ways - ShortWays, Duration(0));
-            _air.Reported(delay.Peer, delay.Delay, delay.ArrivedAt - known, now);
-        }
-        for (const auto &[peer, sentAt] : served.NothingLate)
-        {
-            _air.NothingLate(peer, sentAt, now);
-        }
-        if (_links.HasDelays())
-        {
-            _links.TakeDelays(now, [this](const std::string &node, Duration delay, Duration arrivedAt)
-                              { _presence.NoteDelay(node, delay, arrivedAt); });
-        }
-        Duration next = std::min(_presence.NextDue(), _air.Serve(now));
-        next = std::min(next, _states.Due().value_or(next));
-        next = std::min(next, _foreign.Service(now));
-        if (_states.TellVersions(_publishers, now))
-        {
-            // A beat that is due already waits for its turn.
-            const Duration beat = _presence.BeatDue();
-            next = beat > now ? std::min(next, beat) : next;
+            next = std::min(next, _choice.Due().value_or(next));
+            _links.WillServe(next);
         }
         if (change.State || change.Offers || _foreign.TakeChange())
         {
@@ -201,13 +194,21 @@ private:
     struct Closed
     {
     };
+    // The changes that all paths together have heard of in a turn.
+    struct Heard
+    {
+        bool State = false;
+        bool NewLife = false;
+        bool Offers = false;
+    };
 
-    Parts(Closed /*tag*/, const GatewayConfig &config, std::shared_ptr<Transport> transport,
-          GatewayManager &manager, const RandomSource &random, Exploration &exploration)
+    Parts(Closed /*tag*/, const GatewayConfig &config,
+          const std::vector<std::shared_ptr<Transport>> &transports, GatewayManager &manager,
+          const RandomSource &random, Exploration &exploration)
         : _config(Validated(config)),
           _manager(manager),
           _workspace(manager.GetWorkspace()),
-          _transport(std::move(transport)),
+          _isStepped(transports.front()->IsStepped()),
           _incarnations(
               config.StateDir, CounterName(config),
               [this] { return GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds()); }, random),
@@ -216,18 +217,11 @@ private:
           _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links, _config.Tap)),
           _incarnation(_links.Incarnation()),
           _source(_workspace.GetClock()),
-          _presence(
-              config.Node, _incarnation, _workspace.GetClock(), _source, _origins, _remote, random,
-              [this](const std::string &node) { return IsNeeded(node); }, manager.WakeUpHandler()),
           _subscriptions(_config.Subscribe, _origins, _workspace, Handlers()),
-          _states(_presence, _subscriptions, random),
+          _choice(transports.size()),
           _fleet(std::make_shared<Gateway::Fleet>()),
           _exploration(exploration)
     {
-        if (!_transport)
-        {
-            throw std::invalid_argument("GatewayManager needs a transport");
-        }
         const std::vector<std::string> forwarders = _workspace.GetListOfQueueForwarders();
         if (std::find(forwarders.begin(), forwarders.end(), _config.Name) != forwarders.end())
         {
@@ -237,6 +231,124 @@ private:
         {
             throw ConfigError(_config.File, 0,
                               "the local message `" + FleetMessageNameOf(_config) + "` is of another type");
+        }
+        MakePaths(transports, random);
+    }
+
+    void MakePaths(const std::vector<std::shared_ptr<Transport>> &transports, const RandomSource &random)
+    {
+        const GatewayPath::Shared shared{
+            .Manager = _manager,
+            .WakeUp = _manager.WakeUpHandler(),
+            .Workspace = _workspace,
+            .Incarnation = _incarnation,
+            .Source = _source,
+            .Origins = _origins,
+            .Remote = _remote,
+            .Links = _links,
+            .Subscribed = _subscriptions,
+            .Choice = _choice,
+            .Random = random,
+            .IsNeeded = [this](const std::string &node) { return IsNeeded(node); },
+            .OnText = [this](const std::string &node, std::uint64_t definition, TypeQuestions::Answer answer)
+            { OnText(node, definition, std::move(answer)); },
+            .ReportOf = [this](NodeReports::Name name) { return ReportOf(name); }};
+        const std::vector<GatewayConfig> configs = PathConfigsOf(_config);
+        std::vector<const PeerTable *> tables;
+        for (std::size_t path = 0; path < configs.size(); ++path)
+        {
+            _paths.push_back(std::make_unique<GatewayPath>(configs[path], transports[path], path, shared));
+            tables.push_back(&_paths.back()->Beats().Peers());
+        }
+        _peers.emplace(std::move(tables), _choice);
+        if (_paths.size() > 1)
+        {
+            _links.SetSecondPath([this](std::string_view node) { return _choice.Second(node, Now()); });
+        }
+    }
+
+    // Takes in the changes that a path has heard of.
+    void TakeIn(std::size_t path, const PeerTable::Change &heard, Heard &change, Duration now)
+    {
+        Presence &beats = _paths[path]->Beats();
+        for (const std::string &node : heard.Forgotten)
+        {
+            Forget(node, path, now);
+        }
+        if (_paths.size() > 1 && (heard.State || heard.NewLife || heard.Offers))
+        {
+            for (const PeerTable::Peer *peer : beats.Peers().Heard())
+            {
+                _choice.Heard(peer->Node, path, peer->State, now);
+                for (const auto &other : _paths)
+                {
+                    other->Beats().Adopt(*peer);
+                }
+            }
+        }
+        if (heard.NewLife)
+        {
+            for (const PeerTable::Peer *peer : beats.Peers().Heard())
+            {
+                _links.HeardOf(peer->Node, peer->Incarnation);
+            }
+        }
+        change.State |= heard.State;
+        change.Offers |= heard.Offers;
+        change.NewLife |= heard.NewLife;
+    }
+
+    void Forget(const std::string &node, std::size_t path, Duration now)
+    {
+        const bool isKnownElsewhere =
+            std::any_of(_paths.begin(), _paths.end(),
+                        [&node](const auto &other) { return other->Beats().Peers().Find(node) != nullptr; });
+        if (isKnownElsewhere)
+        {
+            _choice.Heard(node, path, Gateway::NodeState::LOST, now);
+            return;
+        }
+        _choice.Forget(node);
+        _subscriptions.Forget(node);
+        _links.Forget(node);
+        _outgoing->Forget(node);
+    }
+
+    void ChoosePaths(Heard &change, Duration now)
+    {
+        for (const auto &[node, paths] : _links.TakeCameBy())
+        {
+            for (std::size_t path = 0; path < _paths.size(); ++path)
+            {
+                if ((paths >> path & 1) != 0)
+                {
+                    _choice.CameBy(node, path, now);
+                }
+            }
+        }
+        for (const std::string &node : _links.Unanswered())
+        {
+            _choice.Unanswered(node, now);
+        }
+        for (const std::string &node : _choice.TakeChanged(now))
+        {
+            GatewayPath &path = *_paths[_choice.Of(node)];
+            path.Beats().Publish(node);
+            path.SubscriptionsAdded(now);
+            _links.PathChanged(node);
+            change.State = change.Offers = true;
+        }
+    }
+
+    // Compares the announcements with the subscriptions.
+    void MatchSubscriptions()
+    {
+        for (const PeerTable::Peer *peer : _subscriptions.OnOffers(*_peers))
+        {
+            for (const auto &path : _paths)
+            {
+                path->SetWanted(*peer, _subscriptions.StatesWanted(*peer));
+            }
         }
     }
 
@@ -255,33 +367,18 @@ private:
 
     void OpenSession()
     {
-        TransportSettings settings = TransportSettingsOf(_config, _incarnation);
-        _keysEndAt = AddSecurity(_config, _transport->Name(), settings);
-        _session = _transport->Open(settings, [this](const PeerEvent &event) { _presence.OnPeer(event); });
-        _air.TakeTurns(*_session, _manager.WakeUpHandler());
+        _isOpen = true;
         _openedAt = Now();
-        if (_config.Tool)
+        for (const auto &path : _paths)
         {
-            _presence.BeTool([this](const std::string &node)
-                             { return MatchesAny(_config.Tool->AsksOf, node); });
+            path->Open();
         }
-        if (_config.Replay)
+        // Programs that are no nodes have no beats that tell by which path they are reached.
+        _foreign.Open(_paths.front()->Session(), _manager, _openedAt);
+        for (const auto &path : _paths)
         {
-            _presence.BeReplay();
+            path->Begin();
         }
-        // First, so that the others learn of this node as early as possible.
-        _presence.Open(*_session, Announcements::Of(_config));
-        _links.Open(*_session);
-        _subscriptions.Open(*_session);
-        for (const PublishRule &rule : _config.Publish)
-        {
-            _publishers.emplace_back(rule, *MessageTypeRegistry::Find(rule.Type), _config.Node, _source,
-                                     *_session);
-            Attach(_publishers.back());
-        }
-        _foreign.Open(*_session, _manager, _openedAt);
-        _air.Open(*_session);
-        _states.Open(_publishers);
         _forwards = _workspace.AddQueueForwarder(_config.Name, _outgoing);
         if (!_forwards)
         {
@@ -292,11 +389,11 @@ private:
     void SetExplored(Duration now)
     {
         _exploredAt = now;
-        _exploration.SetNodes(_presence.Peers(), _problemTexts, _workspace.GetClock().Now());
+        _exploration.SetNodes(*_peers, _problemTexts, _workspace.GetClock().Now());
     }
 
     // Serves the requests of FleetExplorer.
-    void Explore(const PeerTable::Change &change, Duration now)
+    void Explore(const Heard &change, Duration now)
     {
         // Clocks and counts change with each beat.
         if (change.State || change.Offers || change.NewLife || !_exploredAt ||
@@ -309,10 +406,10 @@ private:
         {
             // A node that is not there hears no question. If too many texts are wanted, the next turns try
             // again.
-            const PeerTable::Peer *peer = _presence.Peers().Find(wanted.Node);
+            const PeerTable::Peer *peer = _peers->Find(wanted.Node);
             if (peer != nullptr && peer->State != Gateway::NodeState::LOST)
             {
-                static_cast<void>(_types.Want(wanted, now));
+                static_cast<void>(PathOf(wanted.Node).Types().Want(wanted, now));
             }
         }
         bool any = false;
@@ -320,7 +417,7 @@ private:
         {
             try
             {
-                any |= _subscriptions.Add(rule, *_session);
+                any |= _subscriptions.Add(rule);
             }
             catch (const TransportError &error)
             {
@@ -329,15 +426,20 @@ private:
         }
         if (any)
         {
-            _states.SubscriptionsAdded(now);
+            MatchSubscriptions();
+            for (const auto &path : _paths)
+            {
+                path->SubscriptionsAdded(now);
+            }
         }
         if (requests.LookedFor)
         {
-            _exploration.FindSubscribers(*requests.LookedFor, *_session);
+            _exploration.FindSubscribers(*requests.LookedFor, _paths.front()->Session());
         }
     }
 
     RabitHandlerThread *Handlers() const { return _handlers.get(); }
+    GatewayPath &PathOf(const std::string &node) { return *_paths[_choice.Of(node)]; }
 
     ConfigError NameTaken() const
     {
@@ -356,15 +458,6 @@ private:
                std::any_of(_config.Send.begin(), _config.Send.end(),
                            [&names](const SendRule &rule) { return names(rule.To); }) ||
                _links.HasPending(node);
-    }
-
-    void Attach(TopicPublisher &publisher)
-    {
-        if (_manager.AddPublishSubscribeMessage(publisher.Rule().Message, publisher.Local()))
-        {
-            _manager.WakeUpManagerOnMessagePost(publisher.Local());
-            publisher.SetAttached();
-        }
     }
 
     void ReportUndelivered() const
@@ -394,7 +487,7 @@ private:
     void TellClocks() const
     {
         std::vector<GatewayTap::PeerClock> peers;
-        for (const PeerTable::Peer *peer : _presence.Peers().Heard())
+        for (const PeerTable::Peer *peer : _peers->Heard())
         {
             if (const auto relation = peer->Clock.Source())
             {
@@ -411,25 +504,31 @@ private:
         fleet.node = _config.Node;
         fleet.incarnation = _incarnation;
         _subscriptions.Report(fleet);
-        for (const TopicPublisher &publisher : _publishers)
+        for (const TopicPublisher &publisher : _paths.front()->Publishers())
         {
             fleet.publications.push_back(publisher.Status());
         }
         fleet.links = _outgoing->Status();
         fleet.inbound = _links.InboundStatus();
-        fleet.forgotten = _presence.Peers().Forgotten();
-        fleet.crowded_out =
-            _presence.Peers().CrowdedOut() + _subscriptions.CrowdedOut() + _links.CrowdedOut();
-        fleet.malformed = _presence.Malformed() + _links.Malformed() + _types.Malformed();
-        FleetReport::FillNodes(_presence.Peers(), now, fleet);
-        _problemTexts.Fill(_presence.Peers(), fleet);
-        _air.Report(fleet, now);
-        FleetReport::AddNameProblems(_presence.Peers(), fleet);
-        FleetReport::AddNetworkProblems(_session->NetworkProblems(), fleet);
+        fleet.forgotten = _peers->Forgotten();
+        fleet.crowded_out = _peers->CrowdedOut() + _subscriptions.CrowdedOut() + _links.CrowdedOut();
+        fleet.malformed = _links.Malformed();
+        FleetReport::FillNodes(*_peers, now, fleet);
+        _problemTexts.Fill(*_peers, fleet);
+        for (const auto &path : _paths)
+        {
+            fleet.malformed += path->Beats().Malformed() + path->Types().Malformed();
+            path->Report(fleet, now);
+        }
+        FleetReport::AddNameProblems(*_peers, fleet);
         AddProblems(now, fleet);
         _foreign.Report(now, fleet);
         OtherGateways::AddSharedNodes(_workspace, _config.Name, fleet);
-        _presence.SetStrains(_strains.Look(fleet, _presence.Peers(), now));
+        const std::vector<LinkStrain> strains = _strains.Look(fleet, *_peers, now);
+        for (const auto &path : _paths)
+        {
+            path->Beats().SetStrains(strains);
+        }
         {
             const auto global = fleet.GetGlobalPublishSubscribeMessageRef();
             const RabitHandlerThread::Scope scope(Handlers(), _fleetName, global);
@@ -440,19 +539,22 @@ private:
         constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();
         const auto count = static_cast<std::uint16_t>(std::min(_lasted.Problems.size(), most));
         // No node lists a tool, so a tool does not tell its problems.
-        _presence.SetProblems(_config.Tool ? ProblemCount() : ProblemCount{count, _lasted.Digest});
-        for (const PeerTable::Peer *peer : _presence.Peers().Heard())
+        for (const auto &path : _paths)
+        {
+            path->Beats().SetProblems(_config.Tool ? ProblemCount() : ProblemCount{count, _lasted.Digest});
+        }
+        for (const PeerTable::Peer *peer : _peers->Heard())
         {
             const TypeQuestions::Wanted problems{peer->Node, "",
                                                  NodeReports::NameOf(NodeReports::Kind::Problems)};
             if (!_problemTexts.Lacks(*peer))
             {
-                _presence.TypesLacking().LetGo(problems);
+                PathOf(peer->Node).Beats().TypesLacking().LetGo(problems);
             }
             else if (MatchesAny(_config.ProblemsOf, peer->Node))
             {
                 // If too many texts are wanted, the next post asks again.
-                static_cast<void>(_types.Want(problems, now));
+                static_cast<void>(PathOf(peer->Node).Types().Want(problems, now));
             }
         }
     }
@@ -488,7 +590,7 @@ private:
         }
         else if (report->What == NodeReports::Kind::Problems)
         {
-            if (const PeerTable::Peer *peer = _presence.Peers().Find(node))
+            if (const PeerTable::Peer *peer = _peers->Find(node))
             {
                 _problemTexts.Add(*peer, answer.Text);
                 _nextFleet = std::min(_nextFleet, _earliestFleet);
@@ -502,15 +604,11 @@ private:
 
     void AddProblems(Duration now, Gateway::Fleet &fleet) const
     {
-        if (auto lonely = Loneliness::Look(_config, _presence.Peers(), _session->Counters(), _openedAt, now))
+        for (const auto &path : _paths)
         {
-            fleet.problems.push_back(std::move(*lonely));
+            path->AddProblems(fleet, now);
         }
-        if (auto ending = KeysProblem(_keysEndAt, std::time(nullptr)))
-        {
-            fleet.problems.push_back(std::move(*ending));
-        }
-        for (const TopicPublisher &publisher : _publishers)
+        for (const TopicPublisher &publisher : _paths.front()->Publishers())
         {
             if (!publisher.IsAttached())
             {
@@ -521,8 +619,8 @@ private:
         }
         for (const auto &problems :
              {_config.Tap ? _config.Tap->Problems() : std::vector<Gateway::Problem>(),
-              Diagnosis::OfSubscriptions(_subscriptions, _presence.Peers(), now - _openedAt, now),
-              _outgoing->Problems(), _links.Problems(), _presence.Problems(now), _slow.Problems(now)})
+              Diagnosis::OfSubscriptions(_subscriptions, *_peers, now - _openedAt, now),
+              _outgoing->Problems(), _links.Problems(), _slow.Problems(now)})
         {
             fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());
         }
@@ -531,21 +629,20 @@ private:
     const GatewayConfig &_config;  // the manager's
     GatewayManager &_manager;
     RabitWorkspace &_workspace;
-    const std::shared_ptr<Transport> _transport;
+    const bool _isStepped;
     IncarnationStore _incarnations;
     OriginTable _origins;
     RemoteQueues _remote;
     HandlerWatch _slow{_workspace.GetClock()};
     // Calls the program's own handlers of data from other nodes. Null where the network is stepped.
     const std::unique_ptr<RabitHandlerThread> _handlers{
-        _transport && !_transport->IsStepped() ? std::make_unique<RabitHandlerThread>(&_slow) : nullptr};
+        !_isStepped ? std::make_unique<RabitHandlerThread>(&_slow) : nullptr};
     LinkDriver _links;
     const std::shared_ptr<OutgoingQueues> _outgoing;
     const std::uint64_t _incarnation;
     const SourceClock _source;
-    Presence _presence;
     Subscriptions _subscriptions;
-    StateExchange _states;
+    PathChoice _choice;
     ForeignTopics _foreign{_config, _source, Handlers()};
     std::shared_ptr<Gateway::Fleet> _fleet;
     LinkStrains _strains;
@@ -561,17 +658,9 @@ private:
     Duration _nextFleet{0};
     Duration _earliestFleet{0};
     Duration _openedAt{0};
-    std::optional<std::time_t> _keysEndAt;
-    std::unique_ptr<TransportSession> _session;
-    std::deque<TopicPublisher> _publishers;
-    TypeExchange _types{_config,
-                        _presence,
-                        _links,
-                        _manager.WakeUpHandler(),
-                        [this](const std::string &node, std::uint64_t definition,
-                               TypeQuestions::Answer answer) { OnText(node, definition, std::move(answer)); },
-                        [this](NodeReports::Name name) { return ReportOf(name); }};
-    AirTraffic _air{_config, _workspace.GetClock(), _presence, _links, _publishers, _types};
+    bool _isOpen = false;
+    std::vector<std::unique_ptr<GatewayPath>> _paths;
+    std::optional<PeersOverPaths> _peers;
 };
 
 GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport)
@@ -581,12 +670,22 @@ GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Tran
 
 GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
                                RabitWorkspace &workspace, RandomSource random)
+    : GatewayManager(config,
+                     std::vector<std::shared_ptr<Transport>>(std::max<std::size_t>(config.Paths.size(), 1),
+                                                             std::move(transport)),
+                     workspace, std::move(random))
+{
+}
+
+GatewayManager::GatewayManager(const GatewayConfig &config,
+                               std::vector<std::shared_ptr<Transport>> transports, RabitWorkspace &workspace,
+                               RandomSource random)
     : RabitManager(config.Name, workspace),
       _config(config),
-      _transport(std::move(transport)),
+      _transports(Checked(std::move(transports), std::max<std::size_t>(config.Paths.size(), 1))),
       _random(std::move(random)),
       _exploration(std::make_unique<Exploration>(WakeUpHandler())),
-      _parts(std::make_unique<Parts>(_config, _transport, *this, _random, *_exploration))
+      _parts(std::make_unique<Parts>(_config, _transports, *this, _random, *_exploration))
 {
 }
 
@@ -603,7 +702,7 @@ void GatewayManager::Startup()
     if (!_parts || !_parts->IsOpen())
     {
         _parts.reset();
-        _parts = std::make_unique<Parts>(_config, _transport, *this, _random, *_exploration);
+        _parts = std::make_unique<Parts>(_config, _transports, *this, _random, *_exploration);
     }
 }
 

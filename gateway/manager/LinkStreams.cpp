@@ -15,11 +15,13 @@ constexpr LinkStreams::Duration Unused = std::chrono::minutes(1);
 }  // namespace
 
 LinkStreams::LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, AirSchedule &schedule,
-                         CopiesTo copies)
+                         CopiesTo copies, const PathChoice &choice, std::size_t path)
     : _rules(rules),
       _links(links),
       _schedule(schedule),
       _copies(std::move(copies)),
+      _choice(choice),
+      _path(path),
       _visit([this](const LinkStream &link) { Visit(link); })
 {
 }
@@ -46,6 +48,10 @@ void LinkStreams::Look(std::size_t most, Duration now)
 
 void LinkStreams::Visit(const LinkStream &link)
 {
+    if (_choice.Of(link.Destination) != _path)
+    {
+        return;
+    }
     Stream &stream = StreamOf(link);
     stream.SeenIn = _looks;
     stream.ReadyAt = _now;
@@ -89,7 +95,7 @@ bool LinkStreams::Send(StreamId id, std::size_t most, Duration now, bool &sent)
     const Stream &stream = *_byIndex[id.Index];
     // A link only estimates the size of its next datagram.
     const std::size_t copies = _copies(*stream.Node);
-    sent = _links.SendOne(*stream.Node, *stream.Queue, _schedule.Room(most * copies, now) / copies);
+    sent = _links.SendOne(_path, *stream.Node, *stream.Queue, _schedule.Room(most * copies, now) / copies);
     return true;
 }
 

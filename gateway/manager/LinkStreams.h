@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "air/AirSchedule.h"
+#include "paths/PathChoice.h"
 #include "queues/LinkDriver.h"
 
 namespace Rabit
@@ -29,9 +30,9 @@ public:
     // Number of copies of a datagram that are sent for that node.
     using CopiesTo = std::function<std::size_t(std::string_view node)>;
 
-    // References must outlive the object.
-    LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, AirSchedule &schedule,
-                CopiesTo copies);
+    // Of the links to nodes that `path` carries. References must outlive the object.
+    LinkStreams(const std::vector<SendRule> &rules, LinkDriver &links, AirSchedule &schedule, CopiesTo copies,
+                const PathChoice &choice, std::size_t path);
 
     // Tells the schedule which links could send now, in datagrams of at most `most` bytes on the air.
     void Look(std::size_t most, Duration now);
@@ -59,6 +60,8 @@ private:
     LinkDriver &_links;
     AirSchedule &_schedule;
     const CopiesTo _copies;
+    const PathChoice &_choice;
+    const std::size_t _path;
     const std::function<void(const LinkStream &)> _visit;
     std::map<std::string, Queues, std::less<>> _nodes;
     std::vector<Stream *> _byIndex;  // of the schedule's streams; null: not one of these

@@ -18,16 +18,17 @@ constexpr std::size_t SmallestPart = 64;
 }  // namespace
 
 TypeExchange::TypeExchange(const GatewayConfig &config, Presence &presence, LinkDriver &links,
-                           std::function<void()> wake, OnText onText, ReportOf reportOf)
+                           std::size_t path, std::function<void()> wake, OnText onText, ReportOf reportOf)
     : _presence(presence),
       _links(links),
+      _path(path),
       _wake(std::move(wake)),
       _onText(std::move(onText)),
       _reportOf(std::move(reportOf)),
       _largestFrame(LargestLinkFrame(config.MaxDatagram, config.Security.has_value())),
       _answers([this](std::uint64_t definition) { return TextOf(definition); })
 {
-    _links.SetOtherFrames(TypeFrames::FirstByte,
+    _links.SetOtherFrames(_path, TypeFrames::FirstByte,
                           [this](std::string_view node, std::span<const std::uint8_t> frame)
                           { OnFrame(node, frame); });
 }
@@ -120,7 +121,7 @@ void TypeExchange::SendOne(std::size_t mostBody, Duration now)
     part.Of = static_cast<std::uint32_t>(next.Text->size());
     const auto *bytes = reinterpret_cast<const std::uint8_t *>(next.Text->data());
     part.Bytes = std::span(bytes, next.Text->size()).subspan(next.First, size);
-    _links.SendOther(next.Node, TypeFrames::Encode(part));
+    _links.SendOther(_path, next.Node, TypeFrames::Encode(part));
     _answers.Sent(size, now);
 }
 

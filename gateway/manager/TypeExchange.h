@@ -41,9 +41,9 @@ public:
     // Returns a report of this node; empty if there is nothing to report.
     using ReportOf = std::function<std::optional<std::string>(NodeReports::Name name)>;
 
-    // References must outlive the object, and the object the opened links. `wake` makes the gateway's thread
-    // call TakeIn soon; called on any thread.
-    TypeExchange(const GatewayConfig &config, Presence &presence, LinkDriver &links,
+    // One for each path. References must outlive the object, and the object the opened links. `wake` makes
+    // the gateway's thread call TakeIn soon; called on any thread.
+    TypeExchange(const GatewayConfig &config, Presence &presence, LinkDriver &links, std::size_t path,
                  std::function<void()> wake, OnText onText, ReportOf reportOf);
 
     // Requests a text. False: too many are lacking.
@@ -79,6 +79,7 @@ private:
 
     Presence &_presence;
     LinkDriver &_links;
+    const std::size_t _path;
     const std::function<void()> _wake;
     const OnText _onText;
     const ReportOf _reportOf;

@@ -5,9 +5,10 @@
 namespace Rabit
 {
 
-StateExchange::StateExchange(Presence &presence, Subscriptions &subscriptions, RandomSource random)
+StateExchange::StateExchange(Presence &presence, const Subscriptions &subscriptions, RandomSource random,
+                             Carries carries)
     : _presence(presence),
-      _subscriptions(subscriptions),
+      _carries(std::move(carries)),
       _repair([&subscriptions](const std::string &node, std::uint64_t incarnation, std::size_t subscription)
               { return subscriptions.TakenIn(subscription, node, incarnation); },
               std::move(random))
@@ -49,12 +50,7 @@ void StateExchange::TakeIn(const PeerTable::Change &change)
 {
     for (const std::string &node : change.Forgotten)
     {
-        _subscriptions.Forget(node);
         _repair.Forget(node);
-    }
-    if (change.Offers || change.NewLife)
-    {
-        Compare();
     }
     if (change.State)
     {
@@ -68,18 +64,8 @@ void StateExchange::TakeIn(const PeerTable::Change &change)
     }
 }
 
-// Matches the subscriptions with the announcements, and sets the States that StateRepair requests.
-void StateExchange::Compare()
+void StateExchange::AskAgain(Duration now)
 {
-    for (const PeerTable::Peer *peer : _subscriptions.OnOffers(_presence.Peers()))
-    {
-        _repair.SetWanted(peer->Node, peer->Incarnation, _subscriptions.StatesWanted(*peer));
-    }
-}
-
-void StateExchange::SubscriptionsAdded(Duration now)
-{
-    Compare();
     std::vector<std::string> nodes;
     for (const PeerTable::Peer *peer : _presence.Peers().Heard())
     {
@@ -99,7 +85,7 @@ void StateExchange::TakeIn(const std::vector<std::string> &told, Duration now)
     {
         const PeerTable::Peer *peer = _presence.Peers().Find(node);
         const auto source = peer == nullptr ? std::nullopt : peer->Clock.Source();
-        if (source && peer->State != Gateway::NodeState::LOST)
+        if (source && peer->State != Gateway::NodeState::LOST && _carries(node))
         {
             _repair.OnTold(node,
                            {.Incarnation = peer->Incarnation,

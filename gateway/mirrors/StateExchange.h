@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/gateway/RandomSource.h>
+#include <functional>
 
 #include <chrono>
 #include <cstddef>
@@ -19,14 +20,18 @@ namespace Rabit
 
 // Carries versions and requests of States between Presence and the mirrors. Announces the versions of this
 // node's States, has a State written again that others request, and requests States that this node lacks
-// (StateRepair). Gateway's thread only.
+// (StateRepair). One for each path; a path requests only States of nodes that it carries. Gateway's thread
+// only.
 class StateExchange
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
+    using Carries = std::function<bool(const std::string &node)>;
+
     // References must outlive the object.
-    StateExchange(Presence &presence, Subscriptions &subscriptions, RandomSource random);
+    StateExchange(Presence &presence, const Subscriptions &subscriptions, RandomSource random,
+                  Carries carries);
 
     // Once all publishers are there, in the order of the announcement.
     void Open(const std::deque<TopicPublisher> &publishers);
@@ -35,14 +40,20 @@ public:
     {
         // Most of the time there is nothing to do.
         const PeerTable::Change &change = served.Change;
-        if (change.State || change.Offers || change.NewLife || !change.Forgotten.empty() ||
-            !served.StatesTold.empty() || !served.StatesAsked.empty() || !_repair.IsIdle())
+        if (change.State || !change.Forgotten.empty() || !served.StatesTold.empty() ||
+            !served.StatesAsked.empty() || !_repair.IsIdle())
         {
             TakeIn(served, publishers, now);
         }
     }
-    // After Subscriptions::Add.
-    void SubscriptionsAdded(Duration now);
+    // The States of a node that are wanted, which Subscriptions knows.
+    void SetWanted(const PeerTable::Peer &peer, const std::vector<StateRepair::Wanted> &states)
+    {
+        _repair.SetWanted(peer.Node, peer.Incarnation, states);
+    }
+    // More States are wanted than before, or this path carries more nodes: compares with what their last
+    // beats told.
+    void AskAgain(Duration now);
     // After the publishers have written. Returns whether a beat may be due sooner than before.
     bool TellVersions(const std::deque<TopicPublisher> &publishers, Duration now);
     // When to call Serve again at the latest, beside the times that Presence knows; empty: not at all.
@@ -51,12 +62,11 @@ public:
 private:
     void TakeIn(const Presence::Served &served, std::deque<TopicPublisher> &publishers, Duration now);
     void TakeIn(const PeerTable::Change &change);
-    void Compare();
     void TakeIn(const std::vector<std::string> &told, Duration now);
     void Ask(Duration now);
 
     Presence &_presence;
-    Subscriptions &_subscriptions;
+    const Carries _carries;
     StateRepair _repair;
     std::vector<std::size_t> _states;      // the publisher of the State with that index
     std::vector<std::uint32_t> _versions;  // as told last

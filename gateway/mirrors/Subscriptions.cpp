@@ -22,21 +22,24 @@ Subscriptions::Subscriptions(const std::vector<SubscribeRule> &rules, const Orig
 
 void Subscriptions::Open(TransportSession &session)
 {
-    for (const SubscribeRule &rule : _rules)
+    _sessions.push_back(&session);
+    for (std::size_t i = 0; i < _rules.size(); ++i)
     {
-        Open(rule, session);
+        TopicSubscriber &subscriber =
+            i < _subscriptions.size() ? *_subscriptions[i].Subscriber : Make(_rules[i]);
+        subscriber.Open(session);
     }
 }
 
-void Subscriptions::Open(const SubscribeRule &rule, TransportSession &session)
+TopicSubscriber &Subscriptions::Make(const SubscribeRule &rule)
 {
-    auto subscriber = std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins,
-                                                        _workspace, _handlers);
-    subscriber->Open(session);
-    _subscriptions.push_back({&rule, std::move(subscriber)});
+    _subscriptions.push_back(
+        {&rule, std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins,
+                                                  _workspace, _handlers)});
+    return *_subscriptions.back().Subscriber;
 }
 
-bool Subscriptions::Add(const SubscribeRule &rule, TransportSession &session)
+bool Subscriptions::Add(const SubscribeRule &rule)
 {
     if (std::any_of(_rules.begin(), _rules.end(),
                     [&rule](const SubscribeRule &other) { return other.Message == rule.Message; }))
@@ -46,10 +49,15 @@ bool Subscriptions::Add(const SubscribeRule &rule, TransportSession &session)
     _rules.push_back(rule);
     try
     {
-        Open(_rules.back(), session);
+        TopicSubscriber &subscriber = Make(_rules.back());
+        for (TransportSession *session : _sessions)
+        {
+            subscriber.Open(*session);
+        }
     }
     catch (...)
     {
+        _subscriptions.resize(_rules.size() - 1);
         _rules.pop_back();
         throw;
     }
@@ -60,6 +68,7 @@ bool Subscriptions::Add(const SubscribeRule &rule, TransportSession &session)
 void Subscriptions::Close()
 {
     _subscriptions.clear();
+    _sessions.clear();
     _known.clear();
 }
 
@@ -76,7 +85,7 @@ std::optional<QosProfile> Subscriptions::OfferFor(const SubscribeRule &rule, con
                : std::nullopt;
 }
 
-std::vector<const PeerTable::Peer *> Subscriptions::OnOffers(const PeerTable &peers)
+std::vector<const PeerTable::Peer *> Subscriptions::OnOffers(const PeersOverPaths &peers)
 {
     std::vector<const PeerTable::Peer *> changed;
     for (const PeerTable::Peer *peer : peers.Heard())

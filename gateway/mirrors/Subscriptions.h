@@ -18,6 +18,7 @@
 #include "mirrors/Reception.h"
 #include "mirrors/StateRepair.h"
 #include "mirrors/TopicSubscriber.h"
+#include "paths/PeersOverPaths.h"
 #include "presence/OriginTable.h"
 #include "presence/PeerTable.h"
 
@@ -32,14 +33,14 @@ public:
     Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
                   RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr);
 
-    // Throws TransportError.
+    // Reads from that session as well, and keeps it until Close. Throws TransportError.
     void Open(TransportSession &session);
     void Close();
     // Adds a rule while open; false if the message is subscribed to already. Throws TransportError. OnOffers
     // then returns all nodes once more.
-    bool Add(const SubscribeRule &rule, TransportSession &session);
+    bool Add(const SubscribeRule &rule);
     // Processes new announcements and incarnations. Returns the nodes that have one.
-    std::vector<const PeerTable::Peer *> OnOffers(const PeerTable &peers);
+    std::vector<const PeerTable::Peer *> OnOffers(const PeersOverPaths &peers);
     // The States of that node that are wanted, and by which of Rules().
     std::vector<StateRepair::Wanted> StatesWanted(const PeerTable::Peer &peer) const;
     // As TopicSubscriber::TakenIn, of the reader of one of Rules().
@@ -70,7 +71,7 @@ private:
         bool operator==(const Known &) const = default;
     };
 
-    void Open(const SubscribeRule &rule, TransportSession &session);
+    TopicSubscriber &Make(const SubscribeRule &rule);
     static std::optional<QosProfile> OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer);
 
     std::deque<SubscribeRule> _rules;  // they stay where they are
@@ -78,6 +79,7 @@ private:
     RabitWorkspace &_workspace;
     RabitHandlerThread *const _handlers;
     std::vector<Subscription> _subscriptions;  // of each rule, in their order, while open
+    std::vector<TransportSession *> _sessions;
     std::map<std::string, Known> _known;
 };
 

@@ -3,6 +3,7 @@
 #include <rabit/RabitLog.h>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "clocks/GpsTime.h"
@@ -35,19 +36,21 @@ TopicSubscriber::TopicSubscriber(const SubscribeRule &rule, const MessageType &t
 
 TopicSubscriber::~TopicSubscriber()
 {
-    _reader.reset();  // first: its handler uses the rest
+    _readers.clear();  // first: their handler uses the rest
 }
 
 void TopicSubscriber::Open(TransportSession &session)
 {
-    _reader = session.CreateReader(
+    _comesTwice = !_readers.empty();
+    _readers.push_back(session.CreateReader(
         GatewayTopics::Describe(_rule.Message, _type), GatewayTopics::QosOf(QosProfile::Telemetry),
-        _rule.From, [this](SampleBytes bytes, const SampleInfo &info) { OnSample(bytes, info); });
+        _rule.From, [this](SampleBytes bytes, const SampleInfo &info) { OnSample(bytes, info); }));
 }
 
 int TopicSubscriber::MatchedWriters() const
 {
-    return _reader ? _reader->MatchedWriters() : 0;
+    return std::accumulate(_readers.begin(), _readers.end(), 0,
+                           [](int sum, const auto &reader) { return sum + reader->MatchedWriters(); });
 }
 
 std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_view node,
@@ -173,7 +176,12 @@ void TopicSubscriber::OnSample(SampleBytes bytes, const SampleInfo &info)
     std::optional<QosProfile> offer;
     if (const std::shared_ptr<Source> source = SourceOf(info.Node, offer))
     {
-        const Outcome outcome = Take(*source, offer, bytes, info);
+        const Outcome outcome = [&]
+        {
+            const std::unique_lock lock =
+                _comesTwice ? std::unique_lock(_taking) : std::unique_lock<std::mutex>();
+            return Take(*source, offer, bytes, info);
+        }();
         Count(*source, outcome, info);
         if (outcome == Outcome::Undecodable)
         {
@@ -194,7 +202,7 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
     {
         return Outcome::Refused;
     }
-    if (offer == QosProfile::State && IsRepetition(source, info))
+    if ((offer == QosProfile::State || _comesTwice) && IsRepetition(source, info))
     {
         return Outcome::Repeated;
     }

@@ -7,6 +7,7 @@
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/Transport.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -48,7 +49,7 @@ public:
                     RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr);
     ~TopicSubscriber();
 
-    // Opens the reader; throws TransportError.
+    // Reads from that session as well; throws TransportError.
     void Open(TransportSession &session);
 
     // The profile with which a node announces the message; empty: it does not say, or not yet. A rule with
@@ -116,7 +117,9 @@ private:
     const OriginTable &_origins;
     RabitWorkspace &_workspace;
     RabitHandlerThread *const _handlers;
-    // Only the handler uses it, and a reader's handlers never run two at once.
+    // Held by the handler, from decoding to the post, if there are several sessions: their readers may run at
+    // once, one reader's handlers never do.
+    std::mutex _taking;
     std::unique_ptr<RabitMessage> _scratch;
 
     mutable std::mutex _mutex;  // guards the counters in _sources, and the maps
@@ -125,7 +128,8 @@ private:
     std::map<std::string, QosProfile, std::less<>> _offers;
     std::uint64_t _crowdedOut = 0;
 
-    std::unique_ptr<TransportReader> _reader;
+    std::vector<std::unique_ptr<TransportReader>> _readers;
+    std::atomic<bool> _comesTwice{false};  // there are several sessions
 };
 
 }  // namespace Rabit

@@ -362,6 +362,21 @@ void PeerTable::CompareOffers(Peer &peer, const HeardBeat &heard, Change &change
     _missing.LetGo(peer.Node);
 }
 
+void PeerTable::Adopt(const Peer &elsewhere)
+{
+    const auto found = _peers.find(elsewhere.Node);
+    if (found == _peers.end() || !elsewhere.Offers || found->second.Incarnation != elsewhere.Incarnation ||
+        found->second.BeatsOffers != elsewhere.OffersDigest || found->second.HasPresentOffers())
+    {
+        return;
+    }
+    Peer &peer = found->second;
+    peer.Offers = elsewhere.Offers;
+    peer.OffersDigest = elsewhere.OffersDigest;
+    peer.OffersSince = elsewhere.OffersSince;
+    _missing.LetGo(peer.Node);
+}
+
 PeerTable::Change PeerTable::OnGoodbye(const HeardBeat &heard)
 {
     const auto found = _peers.find(heard.Node);

@@ -132,6 +132,9 @@ public:
     Change OnBeat(const HeardBeat &heard);
     // The transport saw the node close its session.
     Change OnLeft(const std::string &node, std::uint64_t incarnation);
+    // Takes over the announcement of a node, if its beats here have the same digest, so that it need not be
+    // requested by this path.
+    void Adopt(const Peer &elsewhere);
     // Lets time pass.
     Change Advance(Duration now);
     // When Advance would next change something; empty: not before the next input.

@@ -32,7 +32,7 @@ void KeepOneOfEach(Items &items)
 
 Presence::Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
                    const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
-                   PeerTable::IsNeeded isNeeded, std::function<void()> wake)
+                   PeerTable::IsNeeded isNeeded, std::function<void()> wake, SpeaksOf speaksOf)
     : _node(node),
       _tag(NodeTagOf(node, incarnation)),
       _clock(clock),
@@ -40,6 +40,7 @@ Presence::Presence(const std::string &node, std::uint64_t incarnation, const Rab
       _origins(origins),
       _remote(remote),
       _wake(std::move(wake)),
+      _speaksOf(std::move(speaksOf)),
       _peers(node, incarnation, std::move(isNeeded)),
       _introductions(random),
       _contents(_peers, std::move(random))
@@ -133,7 +134,10 @@ const Presence::Served &Presence::Service(Duration now)
     {
         for (const PeerTable::Peer *peer : _peers.Heard())
         {
-            _remote.Update(*peer);
+            if (_speaksOf(peer->Node))
+            {
+                _remote.Update(*peer);
+            }
             if (peer->State == Gateway::NodeState::LOST)
             {
                 _contents.Types().Forget(peer->Node);
@@ -291,13 +295,20 @@ void Presence::Note(const PeerTable::Change &change, const std::string &node, Se
     served.Change.Offers |= change.Offers;
     for (const std::string &forgotten : change.Forgotten)
     {
-        _remote.Forget(forgotten);
-        _origins.Forget(forgotten);
+        if (_speaksOf(forgotten))
+        {
+            _remote.Forget(forgotten);
+            _origins.Forget(forgotten);
+        }
         _contents.Questions().Forget(forgotten);
         _contents.Types().Forget(forgotten);
         served.Change.Forgotten.push_back(forgotten);
     }
-    Publish(node, change);
+    const PeerTable::Peer *const peer = _peers.Find(node);
+    if (peer != nullptr && !peer->IsTool && _speaksOf(node))
+    {
+        Publish(*peer, change.State || change.NewLife || change.Offers);
+    }
 }
 
 // Number of live nodes besides `node` and this one.
@@ -312,20 +323,24 @@ std::size_t Presence::OthersThan(const std::string &node) const
 }
 
 // Hands the facts about a node to the tables that other threads read.
-void Presence::Publish(const std::string &node, const PeerTable::Change &change)
+void Presence::Publish(const PeerTable::Peer &peer, bool offers)
 {
-    const PeerTable::Peer *peer = _peers.Find(node);
-    if (peer == nullptr || peer->IsTool)
+    if (offers)
     {
-        return;
+        _remote.Update(peer);
     }
-    if (change.State || change.NewLife || change.Offers)
+    if (const std::optional<PeerClock::SourceRelation> source = peer.Clock.Source())
     {
-        _remote.Update(*peer);
+        _origins.Set(peer.Node, OriginTable::Origin{peer.Incarnation, *source, peer.Clock.SourceToWall()});
     }
-    if (const std::optional<PeerClock::SourceRelation> source = peer->Clock.Source())
+}
+
+void Presence::Publish(const std::string &node)
+{
+    const PeerTable::Peer *const peer = _peers.Find(node);
+    if (peer != nullptr && !peer->IsTool)
     {
-        _origins.Set(node, OriginTable::Origin{peer->Incarnation, *source, peer->Clock.SourceToWall()});
+        Publish(*peer, true);
     }
 }
 

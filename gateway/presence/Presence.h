@@ -42,11 +42,14 @@ class Presence
 public:
     using Duration = std::chrono::nanoseconds;
 
+    // True if what this object knows of that node goes into the tables that other threads read.
+    using SpeaksOf = std::function<bool(const std::string &node)>;
+
     // `wake` makes the gateway's thread call Service soon; called on any thread. References must outlive the
-    // object.
+    // object. Of several paths that lead to a node, one `speaksOf` it.
     Presence(const std::string &node, std::uint64_t incarnation, const RabitClock &clock,
              const SourceClock &source, OriginTable &origins, RemoteQueues &remote, RandomSource random,
-             PeerTable::IsNeeded isNeeded, std::function<void()> wake);
+             PeerTable::IsNeeded isNeeded, std::function<void()> wake, SpeaksOf speaksOf);
     ~Presence();
 
     // This node is a tool, and requests the announcements of these nodes alone. Before Open.
@@ -93,6 +96,12 @@ public:
 
     // Processes the inbox; sends nothing. The returned reference is valid until the next call.
     const Served &Service(Duration now);
+    // The result of the last call.
+    const Served &LastServed() const { return _served; }
+    // This object speaks of that node from now on.
+    void Publish(const std::string &node);
+    // The announcement of a node, which has come by another path.
+    void Adopt(const PeerTable::Peer &elsewhere) { _peers.Adopt(elsewhere); }
     // When to call Service again at the latest.
     Duration NextDue() const;
 
@@ -167,7 +176,7 @@ private:
     void TakeQuestions(const HeardBeat &heard, Duration now, Served &served);
     void TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, Served &served) const;
     void Note(const PeerTable::Change &change, const std::string &node, Served &served);
-    void Publish(const std::string &node, const PeerTable::Change &change);
+    void Publish(const PeerTable::Peer &peer, bool offers);
     std::size_t OthersThan(const std::string &node) const;
     Gateway::Beat MakeBeat(const PostTime &time) const;
     WriteResult Write(const Gateway::Beat &beat, const PostTime &time);
@@ -179,6 +188,7 @@ private:
     OriginTable &_origins;
     RemoteQueues &_remote;
     const std::function<void()> _wake;
+    const SpeaksOf _speaksOf;
 
     PeerTable _peers;
     Introductions _introductions;

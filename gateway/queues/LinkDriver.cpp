@@ -71,35 +71,50 @@ std::uint64_t LinkDriver::Incarnation() const
     return _links->Incarnation();
 }
 
-void LinkDriver::SetOtherFrames(std::uint8_t firstByte, OtherFrames take)
+void LinkDriver::SetOtherFrames(std::size_t path, std::uint8_t firstByte, OtherFrames take)
 {
     _otherByte = firstByte;
-    _otherFrames = std::move(take);
+    WayOf(path).Other = std::move(take);
+}
+
+LinkDriver::Way &LinkDriver::WayOf(std::size_t path)
+{
+    while (_ways.size() <= path)
+    {
+        _ways.push_back(std::make_unique<Way>());
+        _ways.back()->Number = _ways.size() - 1;
+    }
+    return *_ways[path];
 }
 
 void LinkDriver::Open(TransportSession &session)
 {
-    _session = &session;
+    const std::size_t path = _open++;
+    Way &way = WayOf(path);
+    way.Session = &session;
     // So that the first message need not wait until the nodes have heard of the writer.
     if (!_config.Accept.empty() || !_config.Send.empty())
     {
-        MakeWriter();
+        WriterOf(path);
     }
-    _reader = session.CreateReader(DescribeLinkTopic(), LinkTopicQos(), {},
-                                   [this](SampleBytes bytes, const SampleInfo &info)
-                                   {
-                                       if (info.Alive)
-                                       {
-                                           OnFrame(bytes, info);
-                                       }
-                                   });
+    way.Reader = session.CreateReader(DescribeLinkTopic(), LinkTopicQos(), {},
+                                      [this, &way](SampleBytes bytes, const SampleInfo &info)
+                                      {
+                                          if (info.Alive)
+                                          {
+                                              OnFrame(bytes, info, way);
+                                          }
+                                      });
 }
 
 void LinkDriver::Close()
 {
-    _reader.reset();
-    _writer.reset();
-    _session = nullptr;
+    for (const std::unique_ptr<Way> &way : _ways)
+    {
+        way->Reader.reset();
+        way->Writer.reset();
+        way->Session = nullptr;
+    }
     News news;
     {
         const std::lock_guard lock(_mutex);
@@ -113,7 +128,7 @@ void LinkDriver::Close()
 // and lists. The sender is the participant that DDS reports: a node cannot use another's name. Frames from a
 // name that no configuration can have are dropped: an answer would go to the partition of that name, and `*`
 // is everybody's.
-void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
+void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way)
 {
     static thread_local LinkFrame frame;
     std::span<const std::uint8_t> encoded;
@@ -122,9 +137,9 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
         ++_malformed;
         return;
     }
-    if (_otherFrames && encoded[0] == _otherByte)
+    if (way.Other && encoded[0] == _otherByte)
     {
-        _otherFrames(info.Node, encoded);
+        way.Other(info.Node, encoded);
         return;
     }
     if (encoded[0] != LinkVersion)
@@ -150,10 +165,16 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
     {
         const std::lock_guard lock(_mutex);
         const LinkTime now = Now();
-        if (_links->OnFrame(frame, now) &&
-            _delays.Heard(info.Node, info.Incarnation, LinkTime(frame.Time), now))
+        if (_links->OnFrame(frame, now))
         {
-            _anyDelays = true;
+            if (way.Delays.Heard(info.Node, info.Incarnation, LinkTime(frame.Time), now))
+            {
+                _anyDelays = true;
+            }
+            if (_ways.size() > 1)
+            {
+                NoteCame(info.Node, way.Number);
+            }
         }
         NoteRaises(now);
         sooner = ServeBy(_outbox.IsEmpty() ? _links->NextDue() : LinkTime(0));
@@ -171,6 +192,35 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info)
         _wake();
     }
     frame.Data.Items.clear();  // they point to bytes that are only borrowed
+}
+
+void LinkDriver::NoteCame(std::string_view name, std::size_t path)
+{
+    auto node = _cameBy.find(name);
+    node = node == _cameBy.end() ? _cameBy.emplace(name, 0).first : node;
+    node->second |= std::uint32_t{1} << path;
+}
+
+std::map<std::string, std::uint32_t> LinkDriver::TakeCameBy()
+{
+    const std::lock_guard lock(_mutex);
+    std::map<std::string, std::uint32_t> cameBy(_cameBy.begin(), _cameBy.end());
+    _cameBy.clear();
+    return cameBy;
+}
+
+std::vector<std::string> LinkDriver::Unanswered() const
+{
+    const std::lock_guard lock(_mutex);
+    std::vector<std::string> nodes;
+    _links->VisitUnanswered(Now(), [&nodes](std::string_view node) { nodes.emplace_back(node); });
+    return nodes;
+}
+
+void LinkDriver::PathChanged(const std::string &node)
+{
+    const std::lock_guard lock(_mutex);
+    _links->PathChanged(node, Now());
 }
 
 void LinkDriver::NoteRaises(LinkTime now)
@@ -290,15 +340,16 @@ void LinkDriver::TellTap()
     }
 }
 
-void LinkDriver::TakeDelays(Duration now,
+void LinkDriver::TakeDelays(std::size_t path, Duration now,
                             const std::function<void(const std::string &, Duration, Duration)> &take)
 {
     const std::lock_guard lock(_mutex);
-    for (const DelayMeter::Report &report : _delays.Take(DelayMeter::MostPeers, now))
+    for (const DelayMeter::Report &report : _ways[path]->Delays.Take(DelayMeter::MostPeers, now))
     {
         take(*report.Node, report.Delay, now - report.Held);
     }
-    _anyDelays = false;
+    // The other paths are asked in the same turn.
+    _anyDelays = path + 1 < _ways.size() && _anyDelays;
 }
 
 void LinkDriver::VisitPaths(const std::function<void(std::string_view, const LinkPathState &)> &visit) const

@@ -55,14 +55,19 @@ public:
 
     // The present incarnation of this node.
     std::uint64_t Incarnation() const;
-    // Sets the handler of frames that begin with `firstByte`, which is no version of the links. It is called
-    // on the transport's threads, with the node that wrote the frame. Before Open.
+    // Sets the handler of frames that begin with `firstByte`, which is no version of the links, and come by
+    // that path. It is called on the transport's threads, with the node that wrote the frame. Before Open.
     using OtherFrames = std::function<void(std::string_view node, std::span<const std::uint8_t> frame)>;
-    void SetOtherFrames(std::uint8_t firstByte, OtherFrames take);
-    // Sends such a frame to that node alone; gateway's thread only. The requesting node has to notice a loss.
-    void SendOther(const std::string &node, std::span<const std::uint8_t> frame);
-    // Starts to receive, and keeps the session for writing until Close. Throws TransportError.
+    void SetOtherFrames(std::size_t path, std::uint8_t firstByte, OtherFrames take);
+    // Sends such a frame to that node alone, by that path; gateway's thread only. The requesting node has to
+    // notice a loss.
+    void SendOther(std::size_t path, const std::string &node, std::span<const std::uint8_t> frame);
+    // Starts to receive by another path, the first one at first, and keeps the session for writing until
+    // Close. Throws TransportError.
     void Open(TransportSession &session);
+    // Sets who tells by which path frames for a node go besides the path of SendOne. Before Open.
+    using SecondPath = std::function<std::optional<std::size_t>(std::string_view node)>;
+    void SetSecondPath(SecondPath second) { _second = std::move(second); }
     // Sends nothing more and receives nothing more. Messages without an outcome get one. Cannot be reopened.
     void Close();
 
@@ -78,15 +83,21 @@ public:
     void VisitStreams(std::size_t most, const std::function<void(const LinkStream &)> &visit) const;
     // Writes one datagram, made now, of at most `most` bytes on the air (LinkNode::SendOne). Returns true if
     // there was one.
-    bool SendOne(std::string_view destination, std::string_view queue, std::size_t most);
+    bool SendOne(std::size_t path, std::string_view destination, std::string_view queue, std::size_t most);
     void WillServe(Duration at);
     // The delays of other nodes' frames that are worth reporting to them (DelayMeter); each datagram is
     // reported once. The name is valid during the call.
     bool HasDelays() const { return _anyDelays; }
     void TakeDelays(
-        Duration now,
+        std::size_t path, Duration now,
         const std::function<void(const std::string &node, Duration delay, Duration arrivedAt)> &take);
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
+    // With several paths. The nodes whose frames have come by a path since the last call, and by which ones
+    // (bit i: the i-th); and the nodes of which an answer is missing for longer than usual.
+    std::map<std::string, std::uint32_t> TakeCameBy();
+    std::vector<std::string> Unanswered() const;
+    // Frames for that node go by another path from now on: what was measured of the former one does not hold.
+    void PathChanged(const std::string &node);
     // The shortest round trip to that node, with nothing waiting; 0: not known.
     Duration ShortestRoundTrip(std::string_view node) const;
 
@@ -138,6 +149,19 @@ private:
         }
     };
 
+    // One path of the gateway.
+    struct Way
+    {
+        std::size_t Number = 0;
+        OtherFrames Other;
+        DelayMeter Delays;  // guarded
+        TransportSession *Session = nullptr;
+        // One for all nodes, made when the node has a use for it: each endpoint of DDS costs all others
+        // discovery.
+        std::unique_ptr<TransportWriter> Writer;
+        std::unique_ptr<TransportReader> Reader;
+    };
+
     // The calling thread's own empty News, with its memory. For the threads of the transport and of the
     // gateway; not for managers, which are called while it is read.
     static News &OwnNews();
@@ -159,16 +183,28 @@ private:
     void TellTap();
 
     // Handler of the transport.
-    void OnFrame(SampleBytes bytes, const SampleInfo &info);
+    void OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way);
     // Without the mutex: decodes the large messages that are complete, and has the links deliver them. For
     // threads that may take that long; every call of the links that may complete a message comes before one.
     void DecodeLarge(News &news);
+    // With the mutex: notes that a frame of that node has come by that path.
+    void NoteCame(std::string_view name, std::size_t path);
     // With the mutex: notes that another live node must have this name, if this one's incarnation was raised
     // too often.
     void NoteRaises(LinkTime now);
-    void MakeWriter();
-    // Writes what the links have sent; without the mutex.
-    void WriteOut();
+    // Before Open, makes it if there is none yet.
+    Way &WayOf(std::size_t path);
+    // Null before Open and after Close.
+    TransportWriter *WriterOf(std::size_t path)
+    {
+        const bool isMade = path < _ways.size() && _ways[path]->Writer;
+        return isMade ? _ways[path]->Writer.get() : MakeWriter(path);
+    }
+    TransportWriter *MakeWriter(std::size_t path);
+    // Writes what the links have sent, by that path; without the mutex.
+    void WriteOut(std::size_t path);
+    static void Write(const LinkDatagrams::Datagram &datagram, TransportWriter *writer,
+                      std::int64_t sourceTime);
     LinkTime Now() const { return _workspace.GetClock().Monotonic(); }
 
     const GatewayConfig &_config;
@@ -187,20 +223,18 @@ private:
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest
 
     std::uint8_t _otherByte = LinkVersion;
-    OtherFrames _otherFrames;
 
-    DelayMeter _delays;
+    std::vector<std::unique_ptr<Way>> _ways;
+    std::size_t _open = 0;  // of these
+    SecondPath _second;
+    std::map<std::string, std::uint32_t, std::less<>> _cameBy;  // guarded; only with several paths
+
     std::atomic<bool> _anyDelays{false};  // changed with the mutex held
     RecentProblems _recent;               // other versions of the links, and another node of this name
     std::uint64_t _lastIncarnation = 0;   // of this node, at the last frame; 0: no frame has come
     std::atomic<std::uint64_t> _malformed{0};
 
     LinkDatagrams _sending;  // gateway's thread only
-    TransportSession *_session = nullptr;
-    // One for all nodes, made when the node has a use for it: each endpoint of DDS costs all others
-    // discovery.
-    std::unique_ptr<TransportWriter> _writer;
-    std::unique_ptr<TransportReader> _reader;
 };
 
 }  // namespace Rabit

@@ -29,11 +29,22 @@ LinkDriver::Duration LinkDriver::Service()
         DecodeLarge(news);
     }
     news.Clear();
-    WriteOut();
+    WriteOut(0);
     return next;
 }
 
-void LinkDriver::WriteOut()
+inline void LinkDriver::Write(const LinkDatagrams::Datagram &datagram, TransportWriter *writer,
+                              std::int64_t sourceTime)
+{
+    if (writer != nullptr)
+    {
+        // The transport counts a failure; the links retransmit lost parts.
+        static_cast<void>(
+            writer->WriteTo(datagram.Destination, LinkSampleEncoder(datagram.Frame), sourceTime));
+    }
+}
+
+void LinkDriver::WriteOut(std::size_t path)
 {
     if (_sending.IsEmpty())
     {
@@ -43,14 +54,14 @@ void LinkDriver::WriteOut()
     _incarnations.Save();
     const std::int64_t sourceTime = GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds());
     _sending.BindNames();
-    MakeWriter();
+    TransportWriter *const writer = WriterOf(path);
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
-        if (_writer)
+        Write(datagram, writer, sourceTime);
+        const std::optional<std::size_t> second = _second ? _second(datagram.Destination) : std::nullopt;
+        if (second && *second != path)
         {
-            // The transport counts a failure; the links retransmit lost parts.
-            static_cast<void>(
-                _writer->WriteTo(datagram.Destination, LinkSampleEncoder(datagram.Frame), sourceTime));
+            Write(datagram, WriterOf(*second), sourceTime);
         }
     }
     _sending.Clear();
@@ -85,7 +96,8 @@ void LinkDriver::VisitStreams(std::size_t most, const std::function<void(const L
     _links->VisitStreams(most, Now(), visit);
 }
 
-bool LinkDriver::SendOne(std::string_view destination, std::string_view queue, std::size_t most)
+bool LinkDriver::SendOne(std::size_t path, std::string_view destination, std::string_view queue,
+                         std::size_t most)
 {
     bool sent = false;
     News &news = OwnNews();
@@ -97,7 +109,7 @@ bool LinkDriver::SendOne(std::string_view destination, std::string_view queue, s
     }
     Tell(news);
     news.Clear();
-    WriteOut();
+    WriteOut(path);
     return sent;
 }
 
@@ -107,23 +119,24 @@ void LinkDriver::WillServe(Duration at)
     _nextService = std::min(_nextService, at);
 }
 
-void LinkDriver::SendOther(const std::string &node, std::span<const std::uint8_t> frame)
+void LinkDriver::SendOther(std::size_t path, const std::string &node, std::span<const std::uint8_t> frame)
 {
-    MakeWriter();
-    if (_writer)
+    if (TransportWriter *const writer = WriterOf(path))
     {
-        static_cast<void>(
-            _writer->WriteTo(node, FrameBytesEncoder(frame),
-                             GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds())));
+        static_cast<void>(writer->WriteTo(node, FrameBytesEncoder(frame),
+                                          GpsTime::ToUtcNanoseconds(_workspace.GetClock().GpsTimeSeconds())));
     }
 }
 
-void LinkDriver::MakeWriter()
+TransportWriter *LinkDriver::MakeWriter(std::size_t path)
 {
-    if (!_writer && _session != nullptr)
+    Way *const way = path < _ways.size() ? _ways[path].get() : nullptr;
+    if (way == nullptr || way->Session == nullptr)
     {
-        _writer = _session->CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {});
+        return nullptr;
     }
+    way->Writer = way->Session->CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {});
+    return way->Writer.get();
 }
 
 }  // namespace Rabit

@@ -24,7 +24,7 @@ const Gateway::PublishedMessage *OfferOf(const std::string &message, const PeerT
 
 // True if nodes may lack the message. `*` in `from` means every node that has it: once one node announces
 // it, the others need not.
-bool MayLack(const SubscribeRule &rule, const PeerTable &peers)
+bool MayLack(const SubscribeRule &rule, const PeersOverPaths &peers)
 {
     if (std::find(rule.From.begin(), rule.From.end(), "*") == rule.From.end())
     {
@@ -102,7 +102,7 @@ std::string WhyNoData(const Wanted &wanted, const PeerTable::Peer &peer, std::ch
 
 }  // namespace
 
-std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTable &peers,
+std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeersOverPaths &peers,
                                              std::chrono::nanoseconds sinceStart,
                                              std::chrono::nanoseconds now)
 {
@@ -143,7 +143,7 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTab
     return problems;
 }
 
-std::vector<Gateway::Problem> OfSubscriptions(const Subscriptions &subscriptions, const PeerTable &peers,
+std::vector<Gateway::Problem> OfSubscriptions(const Subscriptions &subscriptions, const PeersOverPaths &peers,
                                               std::chrono::nanoseconds sinceStart,
                                               std::chrono::nanoseconds now)
 {

@@ -11,7 +11,7 @@
 
 #include "gateway.idl.h"
 #include "mirrors/Reception.h"
-#include "presence/PeerTable.h"
+#include "paths/PeersOverPaths.h"
 
 namespace Rabit
 {
@@ -35,12 +35,12 @@ inline constexpr std::chrono::nanoseconds Patience = std::chrono::milliseconds(1
 
 // Returns the problems of one subscription: at most one for each node that it covers, or one without a node
 // if no such node was heard.
-std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeerTable &peers,
+std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeersOverPaths &peers,
                                              std::chrono::nanoseconds sinceStart,
                                              std::chrono::nanoseconds now);
 
 // Returns the problems of all subscriptions.
-std::vector<Gateway::Problem> OfSubscriptions(const Subscriptions &subscriptions, const PeerTable &peers,
+std::vector<Gateway::Problem> OfSubscriptions(const Subscriptions &subscriptions, const PeersOverPaths &peers,
                                               std::chrono::nanoseconds sinceStart,
                                               std::chrono::nanoseconds now);
 

@@ -46,7 +46,7 @@ Gateway::NodeStatus *NodeIn(Gateway::Fleet &fleet, std::string_view node)
     return row == fleet.nodes.end() || row->node != node ? nullptr : &*row;
 }
 
-void FillNodes(const PeerTable &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet)
+void FillNodes(const PeersOverPaths &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet)
 {
     fleet.nodes.clear();
     for (const PeerTable::Peer *peer : peers.Heard())
@@ -84,7 +84,7 @@ std::string PlacesOf(const PeerTable::Peer &peer)
 }
 }  // namespace
 
-void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet)
+void AddNameProblems(const PeersOverPaths &peers, Gateway::Fleet &fleet)
 {
     if (peers.OwnNameTwice())
     {

@@ -7,20 +7,20 @@
 #include <vector>
 
 #include "gateway.idl.h"
-#include "presence/PeerTable.h"
+#include "paths/PeersOverPaths.h"
 
 namespace Rabit::FleetReport
 {
 
 // Fills the list of nodes: states, times and reasons from the peer table, sums from the topics and links that
 // are already in the message.
-void FillNodes(const PeerTable &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet);
+void FillNodes(const PeersOverPaths &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet);
 
 // Returns the row of that node, by binary search; null if there is none. Only after FillNodes.
 Gateway::NodeStatus *NodeIn(Gateway::Fleet &fleet, std::string_view node);
 
 // Adds a problem for each name that two live nodes share.
-void AddNameProblems(const PeerTable &peers, Gateway::Fleet &fleet);
+void AddNameProblems(const PeersOverPaths &peers, Gateway::Fleet &fleet);
 
 // Adds a problem for each network setting that is wrong on this host now.
 void AddNetworkProblems(const std::vector<SettingsProblem> &problems, Gateway::Fleet &fleet);

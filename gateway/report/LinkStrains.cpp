@@ -60,7 +60,8 @@ std::uint64_t LinkStrains::Rise::Look(std::uint64_t count, Duration now)
     return Lately;
 }
 
-std::vector<LinkStrain> LinkStrains::Look(const Gateway::Fleet &fleet, const PeerTable &peers, Duration now)
+std::vector<LinkStrain> LinkStrains::Look(const Gateway::Fleet &fleet, const PeersOverPaths &peers,
+                                          Duration now)
 {
     std::vector<LinkStrain> strains;
     LookAtLinks(fleet, peers, now, strains);
@@ -69,7 +70,7 @@ std::vector<LinkStrain> LinkStrains::Look(const Gateway::Fleet &fleet, const Pee
     return strains;
 }
 
-void LinkStrains::LookAtLinks(const Gateway::Fleet &fleet, const PeerTable &peers, Duration now,
+void LinkStrains::LookAtLinks(const Gateway::Fleet &fleet, const PeersOverPaths &peers, Duration now,
                               std::vector<LinkStrain> &strains)
 {
     for (auto &[name, link] : _links)
@@ -100,7 +101,7 @@ void LinkStrains::LookAtLinks(const Gateway::Fleet &fleet, const PeerTable &peer
     std::erase_if(_links, [](const auto &entry) { return !entry.second.IsThere; });
 }
 
-void LinkStrains::LookAtStreams(const Gateway::Fleet &fleet, const PeerTable &peers, Duration now,
+void LinkStrains::LookAtStreams(const Gateway::Fleet &fleet, const PeersOverPaths &peers, Duration now,
                                 std::vector<LinkStrain> &strains)
 {
     for (auto &[name, stream] : _streams)

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gateway.idl.h"
-#include "presence/PeerTable.h"
+#include "paths/PeersOverPaths.h"
 #include "wire/LinkStrain.h"
 
 namespace Rabit
@@ -32,7 +32,7 @@ public:
     // Looks at the links and inbound streams in `fleet`, and ignores nodes that are not in `peers`. Returns
     // one strain for each node and kind, the worst first: refused, filling, in doubt, held back. `now`
     // never goes back.
-    std::vector<LinkStrain> Look(const Gateway::Fleet &fleet, const PeerTable &peers, Duration now);
+    std::vector<LinkStrain> Look(const Gateway::Fleet &fleet, const PeersOverPaths &peers, Duration now);
 
 private:
     // A counter that only rises, and its rise since it last stood still for longer than `Memory`.
@@ -57,9 +57,9 @@ private:
     };
     using Name = std::pair<std::string, std::string>;  // node, queue
 
-    void LookAtLinks(const Gateway::Fleet &fleet, const PeerTable &peers, Duration now,
+    void LookAtLinks(const Gateway::Fleet &fleet, const PeersOverPaths &peers, Duration now,
                      std::vector<LinkStrain> &strains);
-    void LookAtStreams(const Gateway::Fleet &fleet, const PeerTable &peers, Duration now,
+    void LookAtStreams(const Gateway::Fleet &fleet, const PeersOverPaths &peers, Duration now,
                        std::vector<LinkStrain> &strains);
 
     std::map<Name, Link> _links;

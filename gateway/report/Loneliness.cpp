@@ -40,7 +40,7 @@ std::string WhatGoesOut(const GatewayConfig &config, const TransportCounters &co
 
 }  // namespace
 
-std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeerTable &peers,
+std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeersOverPaths &peers,
                                      const TransportCounters &counters, std::chrono::nanoseconds openedAt,
                                      std::chrono::nanoseconds now)
 {

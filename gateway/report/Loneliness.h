@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "gateway.idl.h"
-#include "presence/PeerTable.h"
+#include "paths/PeersOverPaths.h"
 
 namespace Rabit
 {
@@ -23,7 +23,7 @@ namespace Loneliness
 inline constexpr std::chrono::nanoseconds Patience = std::chrono::seconds(10);
 
 // Returns the problem, if there is one. `openedAt` is when this node began to listen.
-std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeerTable &peers,
+std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeersOverPaths &peers,
                                      const TransportCounters &counters, std::chrono::nanoseconds openedAt,
                                      std::chrono::nanoseconds now);
 

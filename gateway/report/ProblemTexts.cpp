@@ -79,7 +79,7 @@ bool ProblemTexts::Lacks(const PeerTable::Peer &peer) const
     return mayHave && peer.State != Gateway::NodeState::LOST && Find(peer) == nullptr;
 }
 
-void ProblemTexts::Fill(const PeerTable &peers, Gateway::Fleet &fleet)
+void ProblemTexts::Fill(const PeersOverPaths &peers, Gateway::Fleet &fleet)
 {
     const auto hasNone = [](const PeerTable::Peer &peer)
     { return peer.HasToldProblems && peer.Problems.Count == 0; };

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gateway.idl.h"
+#include "paths/PeersOverPaths.h"
 #include "presence/PeerTable.h"
 #include "report/ProblemLog.h"
 
@@ -37,7 +38,7 @@ public:
     bool Lacks(const PeerTable::Peer &peer) const;
     // Fills the numbers and texts of problems, and forgets the texts of nodes without a problem.
     // Only after FleetReport::FillNodes.
-    void Fill(const PeerTable &peers, Gateway::Fleet &fleet);
+    void Fill(const PeersOverPaths &peers, Gateway::Fleet &fleet);
     // True if the last Fill had a report of that node for all its problems, or that it has none.
     bool AreTold(const std::string &node) const { return _told.contains(node); }
 

@@ -24,12 +24,13 @@ ROOMS = {
     "configuration": ["air", "names", "wire"],
     "types": ["names", "wire"],
     "presence": ["names", "clocks", "wire", "types"],
-    "mirrors": ["air", "names", "clocks", "wire", "presence"],
+    "paths": ["presence"],
+    "mirrors": ["air", "names", "clocks", "wire", "presence", "paths"],
     "queues": ["air", "names", "clocks", "incarnation", "wire", "links", "presence"],
     "foreign": ["names", "clocks", "mirrors", "queues"],
-    "report": ["names", "wire", "presence", "mirrors", "queues"],
-    "manager": ["air", "keys", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "mirrors",
-                "queues", "foreign", "report"],
+    "report": ["names", "wire", "presence", "paths", "mirrors", "queues"],
+    "manager": ["air", "keys", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "paths",
+                "mirrors", "queues", "foreign", "report"],
 }
 
 # The owner of a header, by its path. The first pattern that fits holds.

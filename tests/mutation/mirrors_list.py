@@ -91,8 +91,8 @@ MUTATIONS = [
     publisher("what was never written is repeated", "if (_version != StateVersion::None && _isWhole)", "if (_isWhole)"),
     # Accepted samples
     subscriber("a State may be telemetry", "(_rule.Qos == QosProfile::State && offer != _rule.Qos)", "false"),
-    subscriber("a State that comes again is posted", "offer == QosProfile::State && IsRepetition(source, info)", "false"),
-    subscriber("telemetry of one moment is one", "offer == QosProfile::State && IsRepetition(source, info)",
+    subscriber("a State that comes again is posted", "(offer == QosProfile::State || _comesTwice) && IsRepetition(source, info)", "false"),
+    subscriber("telemetry of one moment is one", "(offer == QosProfile::State || _comesTwice) && IsRepetition(source, info)",
                "IsRepetition(source, info)"),
     subscriber("what was overtaken is posted", "!posted || IsOvertaken(source, info)", "!posted"),
     subscriber("what is refused was taken in", "if (outcome != Outcome::Refused)", "if (true)"),

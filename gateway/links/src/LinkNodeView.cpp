@@ -99,6 +99,25 @@ void LinkNode::VisitPaths(
     }
 }
 
+void LinkNode::VisitUnanswered(LinkTime now, const std::function<void(std::string_view node)> &visit) const
+{
+    for (const auto &[name, peer] : _peers)
+    {
+        if (peer->IsUnansweredAt(now))
+        {
+            visit(name);
+        }
+    }
+}
+
+void LinkNode::PathChanged(std::string_view node, LinkTime now)
+{
+    if (LinkPeer *const peer = FindPeer(node))
+    {
+        peer->PathChanged(now);
+    }
+}
+
 LinkTime LinkNode::ShortestRoundTrip(std::string_view node) const
 {
     const auto peer = _peers.find(node);

@@ -124,6 +124,16 @@ void LinkPeer::HeardNow(LinkTime now)
     _droppedBeyondGaps = false;
 }
 
+void LinkPeer::PathChanged(LinkTime now)
+{
+    _path.Replace();
+    _askedSince = LinkNever;
+    for (LinkSender *sender : _byNumber)
+    {
+        sender->PathChanged(now);
+    }
+}
+
 bool LinkPeer::TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now)
 {
     if (clock == _token.Clock && time <= _token.Time)

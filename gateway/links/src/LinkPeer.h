@@ -54,6 +54,14 @@ public:
     bool IsUnheardAt(LinkTime now) const { return now - _heardAt >= _context.Settings.SilentAfter; }
     LinkTime HeardAt() const { return _heardAt; }
 
+    // True if a frame that asks is unanswered for longer than answers take.
+    bool IsUnansweredAt(LinkTime now) const
+    {
+        return _askedSince != LinkNever && now - _askedSince > _path.ProbeTimeout();
+    }
+    // Frames go by another path from now on.
+    void PathChanged(LinkTime now);
+
     // Rules R1 and S6: this node has taken a new incarnation.
     void OnOwnRaise(LinkTime now);
 

@@ -263,6 +263,14 @@ void LinkSender::OnPeerHeard(LinkTime now)
     }
 }
 
+void LinkSender::PathChanged(LinkTime now)
+{
+    _doublings = 0;
+    _bytesInVain = 0;
+    _probesInVain = 0;
+    _probeAt = _probeAt == LinkNever ? LinkNever : now;
+}
+
 bool LinkSender::IsInVain() const
 {
     return _bytesInVain >= BytesInVain;

@@ -319,6 +319,16 @@ void PathControl::Restart()
     _usualAnswer = LinkTime(0);
 }
 
+void PathControl::Replace()
+{
+    Restart();
+    _times = RoundTrip();
+    _shortest = LinkTime(0);
+    _queueingDelay = LinkTime(0);
+    _roundShortest = LinkNever;
+    _lossRate = 0;
+}
+
 LinkTime PathControl::AckDelay() const
 {
     return std::clamp(_times.Smoothed() * 5 / 4, _settings.AckDelay,

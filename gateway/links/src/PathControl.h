@@ -51,6 +51,8 @@ public:
     void Answered(LinkTime time);
     // Nothing came back for long: the measurements of the path may be wrong.
     void Restart();
+    // It is another path from now on: nothing measured holds.
+    void Replace();
     // Several probes are unanswered: what is under way is lost, or nobody is there, and holds up no other
     // path.
     void LeaveStart()

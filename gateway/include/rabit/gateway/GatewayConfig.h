@@ -107,6 +107,22 @@ struct SecuritySettings
     SecurityLevel Level = SecurityLevel::Encrypt;
 };
 
+// One of several networks by which a node reaches the others, for instance a mesh radio and a modem. Paths
+// are listed from the best to the worst: a node is reached by the first one that works
+// (gateway/paths/README.md).
+struct PathRule
+{
+    std::string Name;  // with the characters of a node name, each once
+    // As in GatewayConfig, for this path alone.
+    std::string Transport;  // empty: that of the gateway
+    std::vector<std::string> Interfaces;
+    std::vector<std::string> Peers;
+    bool Multicast = true;
+    RadioSettings Radio;
+    std::optional<SecuritySettings> Security{};  // unset: that of the gateway
+    int Line = 0;
+};
+
 // A tool, as the program `rabit`: it looks, asks and sends, and nobody counts on it. It publishes and accepts
 // nothing, the others do not list it, and keep nothing of it once it has gone. README.md (A tool is no node
 // of the fleet) has the exact rules.
@@ -179,6 +195,10 @@ struct GatewayConfig
     std::optional<SecuritySettings> Security{};
 
     RadioSettings Radio;
+
+    // Empty: one path, with the settings above. Else each has its own Interfaces, Peers, Multicast and Radio,
+    // and those above must not be set.
+    std::vector<PathRule> Paths{};
 
     // Folder of the incarnation counter; empty: none, the wall clock numbers the incarnations of this node.
     std::string StateDir;

@@ -62,6 +62,10 @@ public:
     GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport);
     GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
                    RabitWorkspace &workspace, RandomSource random = SystemRandom);
+    // Takes one transport for each of GatewayConfig::Paths, in their order; the former constructors use one for
+    // all. Throws std::invalid_argument if there are not as many transports as paths.
+    GatewayManager(const GatewayConfig &config, std::vector<std::shared_ptr<Transport>> transports,
+                   RabitWorkspace &workspace, RandomSource random = SystemRandom);
     ~GatewayManager() override;
 
     // Returns the view of the fleet that tools use: announcements, types, subscriptions at run time. Valid as
@@ -78,7 +82,7 @@ private:
     class Parts;
 
     const GatewayConfig _config;
-    const std::shared_ptr<Transport> _transport;
+    const std::vector<std::shared_ptr<Transport>> _transports;  // of each path
     const RandomSource _random;
     std::unique_ptr<Exploration> _exploration;
     std::unique_ptr<Parts> _parts;  // null if joining again failed

@@ -149,6 +149,11 @@ public:
                                                  const LinkReceiverCounters &)> &visit) const;
     // The same for the path to each node that there is a link to.
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
+    // Calls the function for each node that has not answered a frame for longer than its answers usually
+    // take.
+    void VisitUnanswered(LinkTime now, const std::function<void(std::string_view node)> &visit) const;
+    // Frames for that node go by another path from now on: what was measured of the former one does not hold.
+    void PathChanged(std::string_view node, LinkTime now);
     // The shortest round trip to that node, measured anew now and then with nothing waiting; 0: not known, or
     // nothing was ever sent there.
     LinkTime ShortestRoundTrip(std::string_view node) const;

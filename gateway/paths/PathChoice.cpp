@@ -1,0 +1,158 @@
+#include "paths/PathChoice.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace Rabit
+{
+
+using Gateway::NodeState;
+
+PathChoice::Node &PathChoice::NodeOf(const std::string &node)
+{
+    Node &found = _nodes[node];
+    found.Ways.resize(_paths);
+    return found;
+}
+
+void PathChoice::Fail(Way &way, Duration now)
+{
+    if (way.FailedAt && now - *way.FailedAt > Sound)
+    {
+        way.Rest.Reset();
+    }
+    way.FailedAt = now;
+    way.RestFor = way.Rest.Next();
+    way.RestsUntil = now + way.RestFor;
+}
+
+void PathChoice::Heard(const std::string &node, std::size_t path, NodeState state, Duration now)
+{
+    if (_paths == 1)
+    {
+        return;
+    }
+    Node &of = NodeOf(node);
+    Way &way = of.Ways.at(path);
+    const NodeState before = std::exchange(way.State, state);
+    if (before == state)
+    {
+        return;
+    }
+    if (before == NodeState::UP)
+    {
+        Fail(way, now);
+    }
+    else if (state == NodeState::UP && way.RestsUntil)
+    {
+        // The rest begins when the path is there again.
+        way.RestsUntil = now + way.RestFor;
+    }
+    Choose(node, of, now);
+}
+
+void PathChoice::Unanswered(const std::string &node, Duration now)
+{
+    const auto found = _nodes.find(node);
+    if (_paths == 1 || found == _nodes.end())
+    {
+        return;
+    }
+    Node &of = found->second;
+    const bool hasOther = std::any_of(of.Ways.begin(), of.Ways.end(),
+                                      [&of](const Way &way)
+                                      { return &way != &of.Ways[of.Choice] && way.State == NodeState::UP; });
+    if (!hasOther || (of.Second && now < of.SecondUntil))
+    {
+        return;
+    }
+    const std::size_t before = of.Choice;
+    Fail(of.Ways[before], now);
+    Choose(node, of, now);
+    of.Second = before;
+    of.SecondUntil = now + Both;
+}
+
+void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
+{
+    const auto found = _nodes.find(node);
+    if (_paths == 1 || found == _nodes.end() || found->second.Choice == path)
+    {
+        return;
+    }
+    found->second.Second = path;
+    found->second.SecondUntil = now + Both;
+}
+
+void PathChoice::Choose(const std::string &name, Node &node, Duration now)
+{
+    std::optional<std::size_t> rested;  // the first that is UP and rests
+    std::optional<std::size_t> chosen;
+    for (std::size_t path = 0; path < _paths && !chosen; ++path)
+    {
+        const Way &way = node.Ways[path];
+        if (way.State == NodeState::UP && (!way.RestsUntil || *way.RestsUntil <= now))
+        {
+            chosen = path;
+        }
+        else if (way.State == NodeState::UP)
+        {
+            // With nothing but paths that rest, the present one stays.
+            rested = path == node.Choice || !rested ? path : rested;
+            _due = _due ? std::min(*_due, *way.RestsUntil) : *way.RestsUntil;
+        }
+    }
+    const std::size_t next = chosen.value_or(rested.value_or(node.Choice));
+    if (std::exchange(node.Choice, next) != next)
+    {
+        _changed.push_back(name);
+    }
+    if (node.Second == node.Choice)
+    {
+        node.Second.reset();
+    }
+}
+
+std::vector<std::string> PathChoice::TakeChanged(Duration now)
+{
+    if (_due && *_due <= now)
+    {
+        _due.reset();
+        for (auto &[name, node] : _nodes)
+        {
+            Choose(name, node, now);
+        }
+    }
+    return std::exchange(_changed, {});
+}
+
+std::size_t PathChoice::Of(std::string_view node) const
+{
+    const auto found = _paths == 1 ? _nodes.end() : _nodes.find(node);
+    return found == _nodes.end() ? 0 : found->second.Choice;
+}
+
+std::optional<std::size_t> PathChoice::Second(std::string_view node, Duration now) const
+{
+    const auto found = _paths == 1 ? _nodes.end() : _nodes.find(node);
+    return found == _nodes.end() || now >= found->second.SecondUntil ? std::nullopt : found->second.Second;
+}
+
+bool PathChoice::CarriesAny(std::size_t path) const
+{
+    bool any = false;
+    for (const auto &[name, node] : _nodes)
+    {
+        if (node.Ways[node.Choice].State != NodeState::LOST)
+        {
+            any = true;
+            if (node.Choice == path)
+            {
+                return true;
+            }
+        }
+    }
+    return !any && path == 0;
+}
+
+}  // namespace Rabit

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <rabit/base/Backoff.h>
+
+#include <rabit/gateway/Fleet.h>
+
+#include <chrono>
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace Rabit
+{
+
+// Chooses the path by which each other node is reached. Paths are numbered in the order of the configuration,
+// the best first.
+//
+// A node is reached by the first path on which it is UP and which has not failed lately. A path fails for a
+// node when the node stops being UP on it, and when queue messages remain unanswered on it. After a failure
+// another path is preferred for a second, and twice as long after each further failure, up to half a minute.
+// A path that has not failed for a minute counts as sound again. So a path that comes and goes is left alone.
+// If the node is UP on no path, the choice stays as it was.
+//
+// For some time after a failure, and if the node itself sends by another path than the chosen one, link
+// frames go by a second path as well (Second), since nobody knows yet which of them arrives.
+//
+// A pure state machine; `now` never goes back. All calls are some comparisons if there is one path. The gateway's
+// thread only.
+class PathChoice
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    // How long a second path is used as well.
+    static constexpr Duration Both = std::chrono::seconds(2);
+    static constexpr Backoff::Settings Rest{.First = std::chrono::seconds(1),
+                                            .Longest = std::chrono::seconds(30)};
+    static constexpr Duration Sound = std::chrono::seconds(60);
+
+    explicit PathChoice(std::size_t paths) : _paths(paths) {}
+
+    std::size_t Paths() const { return _paths; }
+    // The state of the node on a path, as its beats there tell.
+    void Heard(const std::string &node, std::size_t path, Gateway::NodeState state, Duration now);
+    // A queue message for the node remains unanswered for longer than usual.
+    void Unanswered(const std::string &node, Duration now);
+    // A frame of the links came from the node by that path.
+    void CameBy(const std::string &node, std::size_t path, Duration now);
+    // The node is known on no path any more.
+    void Forget(const std::string &node) { _nodes.erase(node); }
+    // Lets time pass. Returns the nodes whose path has changed since the last call.
+    std::vector<std::string> TakeChanged(Duration now);
+    // When to call TakeChanged at the latest; empty: not before the next input.
+    std::optional<Duration> Due() const { return _due; }
+
+    // The path of that node; the first one if the node is not known.
+    std::size_t Of(std::string_view node) const;
+    // A path by which link frames for that node go as well.
+    std::optional<std::size_t> Second(std::string_view node, Duration now) const;
+    // True if any node that is not LOST is reached by that path. The first path counts while nobody is known.
+    bool CarriesAny(std::size_t path) const;
+
+private:
+    struct Way
+    {
+        Gateway::NodeState State = Gateway::NodeState::LOST;
+        Backoff Rest{PathChoice::Rest};
+        Duration RestFor{0};  // after the last failure
+        std::optional<Duration> RestsUntil;
+        std::optional<Duration> FailedAt;
+    };
+    struct Node
+    {
+        std::vector<Way> Ways;
+        std::size_t Choice = 0;
+        std::optional<std::size_t> Second;
+        Duration SecondUntil{0};
+    };
+
+    Node &NodeOf(const std::string &node);
+    static void Fail(Way &way, Duration now);
+    void Choose(const std::string &name, Node &node, Duration now);
+
+    const std::size_t _paths;
+    std::map<std::string, Node, std::less<>> _nodes;
+    std::vector<std::string> _changed;
+    std::optional<Duration> _due;
+};
+
+}  // namespace Rabit
