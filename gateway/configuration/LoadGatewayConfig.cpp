@@ -80,23 +80,50 @@ std::optional<YamlMap> Section(const YamlMap &map, const std::string &key,
     return section;
 }
 
-void ReadSecurity(const YamlMap &map, GatewayConfig &config)
+// The sections of a path stand at `place` of the file, those of a gateway at its top.
+void ReadSecurity(const YamlMap &map, const std::string &place, GatewayConfig &config,
+                  std::optional<SecuritySettings> &settings)
 {
-    if (const auto security = Section(map, "security", {"keys", "level"}, "security", config))
+    if (const auto security = Section(map, "security", {"keys", "level"}, place + "security", config))
     {
         security->Require("keys");
-        SecuritySettings &settings = config.Security.emplace();
-        security->Read("keys", settings.Keys);
-        security->Read("level", {"sign", "encrypt"}, settings.Level);
+        settings.emplace();
+        security->Read("keys", settings->Keys);
+        security->Read("level", {"sign", "encrypt"}, settings->Level);
     }
 }
 
-void ReadRadio(const YamlMap &map, GatewayConfig &config)
+void ReadRadio(const YamlMap &map, const std::string &place, GatewayConfig &config, RadioSettings &settings)
 {
-    if (const auto radio = Section(map, "radio", {"budget", "slowest_beat"}, "radio", config))
+    if (const auto radio = Section(map, "radio", {"budget", "slowest_beat"}, place + "radio", config))
     {
-        radio->ReadByteRate("budget", config.Radio.Budget);
-        radio->Read("slowest_beat", config.Radio.SlowestBeat);
+        radio->ReadByteRate("budget", settings.Budget);
+        radio->Read("slowest_beat", settings.SlowestBeat);
+    }
+}
+
+void ReadPaths(const YamlMap &map, GatewayConfig &config)
+{
+    for (const YamlMap &entry :
+         map.Maps("paths", "a `paths` entry",
+                  {"name", "transport", "interfaces", "peers", "multicast", "radio", "security"}))
+    {
+        entry.Require("name");
+        PathRule path;
+        path.Line = entry.Line();
+        entry.Read("name", path.Name);
+        entry.Read("transport", path.Transport);
+        entry.Read("interfaces", path.Interfaces);
+        entry.Read("peers", path.Peers);
+        entry.Read("multicast", path.Multicast);
+        const std::string place = "paths." + path.Name + ".";
+        for (const auto &[key, line] : entry.Lines())
+        {
+            config.Lines[place + key] = line;
+        }
+        ReadRadio(entry, place, config, path.Radio);
+        ReadSecurity(entry, place, config, path.Security);
+        config.Paths.push_back(path);
     }
 }
 
@@ -221,10 +248,11 @@ YamlMap OpenFile(const std::string &file)
     return {file,
             Parse(file, ReadFile(file)),
             "the configuration",
-            {"node",      "name",         "domain",        "transport",   "interfaces",     "peers",
-             "multicast", "max_datagram", "shared_memory", "lease",       "backend_config", "state_dir",
-             "security",  "radio",        "record",        "publish",     "subscribe",      "accept",
-             "send",      "foreign",      "foxglove",      "problems_of", "reports",        "parameters"}};
+            {"node",           "name",        "domain",       "transport",     "interfaces",
+             "peers",          "multicast",   "max_datagram", "shared_memory", "lease",
+             "backend_config", "state_dir",   "security",     "radio",         "record",
+             "publish",        "subscribe",   "accept",       "send",          "foreign",
+             "foxglove",       "problems_of", "reports",      "parameters",    "paths"}};
 }
 
 void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
@@ -251,8 +279,9 @@ GatewayConfig LoadNetworkConfig(const std::string &file)
     config.File = file;
     ReadName(map, "any", config);  // any name will do: it is cleared below
     ReadNetwork(map, config);
-    ReadSecurity(map, config);
-    ReadRadio(map, config);
+    ReadSecurity(map, "", config, config.Security);
+    ReadRadio(map, "", config, config.Radio);
+    ReadPaths(map, config);
     ReadPanels(map, config);
     ValidateGatewayConfig(config);
     config.Node.clear();
@@ -272,8 +301,9 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
     config.File = file;
     ReadName(map, nodeOverride, config);
     ReadNetwork(map, config);
-    ReadSecurity(map, config);
-    ReadRadio(map, config);
+    ReadSecurity(map, "", config, config.Security);
+    ReadRadio(map, "", config, config.Radio);
+    ReadPaths(map, config);
     ReadRecord(map, config);
     ReadPublish(map, config);
     ReadSubscribe(map, config);

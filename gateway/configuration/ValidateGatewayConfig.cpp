@@ -39,7 +39,8 @@ public:
         CheckTool();
         CheckProblemsOf();
         CheckNetwork();
-        CheckRadio();
+        CheckRadio(_config.Radio, "");
+        CheckPaths();
         CheckRecord();
         CheckPublish();
         CheckSubscribe();
@@ -127,39 +128,76 @@ private:
         }
         CheckNoneTwice(_config.Interfaces, "interfaces", LineOf("interfaces"));
         CheckNoneTwice(_config.Peers, "peers", LineOf("peers"));
-        CheckSecurity();
+        CheckSecurity(_config.Security, "");
     }
 
-    void CheckSecurity() const
+    // `place` is that of a path in the file; empty: the gateway's own settings.
+    void CheckSecurity(const std::optional<SecuritySettings> &security, const std::string &place) const
     {
         constexpr int largestDomain = 230;  // the largest that both vendors support with security
-        if (_config.Security && _config.Security->Keys.empty())
+        if (security && security->Keys.empty())
         {
-            Fail(LineOf("security.keys"), "no folder of keys; expected `keys: <folder>`");
+            Fail(LineOf(place + "security.keys"), "no folder of keys; expected `keys: <folder>`");
         }
-        if (_config.Security && _config.Domain > largestDomain)
+        if (security && _config.Domain > largestDomain)
         {
             Fail(LineOf("domain"), "with security the domain must be 0 to " + std::to_string(largestDomain) +
                                        ", not " + std::to_string(_config.Domain));
         }
     }
 
-    void CheckRadio() const
+    void CheckRadio(const RadioSettings &radio, const std::string &place) const
     {
-        const RadioSettings &radio = _config.Radio;
         if (radio.SlowestBeat < std::chrono::milliseconds(500) || radio.SlowestBeat > std::chrono::minutes(1))
         {
-            Fail(LineOf("radio.slowest_beat"), "`slowest_beat` is out of range; expected 500ms to 60s");
+            Fail(LineOf(place + "radio.slowest_beat"),
+                 "`slowest_beat` is out of range; expected 500ms to 60s");
         }
         const double least = SmallestBudget(radio.SlowestBeat);
         if (radio.Budget && !(*radio.Budget >= least))
         {
-            Fail(LineOf("radio.budget"), "the budget is too small to say that this node is there; expected " +
-                                             std::to_string(std::lround(least)) + "B/s or more");
+            Fail(LineOf(place + "radio.budget"),
+                 "the budget is too small to say that this node is there; expected " +
+                     std::to_string(std::lround(least)) + "B/s or more");
         }
         if (radio.Budget && *radio.Budget > LargestBudget)
         {
-            Fail(LineOf("radio.budget"), "the budget is out of range; expected 1000MB/s or less, or auto");
+            Fail(LineOf(place + "radio.budget"),
+                 "the budget is out of range; expected 1000MB/s or less, or auto");
+        }
+    }
+
+    void CheckPaths() const
+    {
+        if (_config.Paths.empty())
+        {
+            return;
+        }
+        for (const char *const key : {"interfaces", "peers", "multicast", "radio"})
+        {
+            if (LineOf(key) > 0)
+            {
+                Fail(LineOf(key), std::string("with `paths`, `") + key + "` belongs to a path");
+            }
+        }
+        const std::size_t most = MostPaths;
+        if (_config.Paths.size() > most)
+        {
+            Fail(_config.Paths[most].Line, "too many paths; expected " + std::to_string(most) + " at most");
+        }
+        std::map<std::string, int> seen;
+        for (const PathRule &path : _config.Paths)
+        {
+            const std::string place = "paths." + path.Name + ".";
+            if (!IsNodeName(path.Name))
+            {
+                Fail(path.Line, "`" + path.Name + "` is no path name; expected 1 to 64 of A-Z a-z 0-9 _ . -");
+            }
+            CheckOnce(seen, path.Name, "paths", path.Line);
+            CheckNoneTwice(path.Interfaces, "interfaces", path.Line);
+            CheckNoneTwice(path.Peers, "peers", path.Line);
+            CheckRadio(path.Radio, place);
+            CheckSecurity(path.Security, place);
         }
     }
 

@@ -38,8 +38,10 @@ void AirReport::Rate::Look(std::uint64_t bytes, double seconds)
     Seen = true;
 }
 
-void AirReport::Fill(const TransportCounters &counters, std::optional<double> capacity,
-                     const std::deque<TopicPublisher> &publishers, Gateway::Fleet &fleet, Duration now)
+Gateway::AirStatus AirReport::Fill(const TransportCounters &counters, std::optional<double> capacity,
+                                   const std::deque<TopicPublisher> &publishers,
+                                   const std::function<bool(std::string_view node)> &carries,
+                                   Gateway::Fleet &fleet, Duration now)
 {
     if (_measuredAt == Duration(0) || now - _measuredAt >= ShortestTime)
     {
@@ -47,7 +49,7 @@ void AirReport::Fill(const TransportCounters &counters, std::optional<double> ca
         Measure(counters, publishers, fleet, seconds);
         _measuredAt = now;
     }
-    Gateway::AirStatus &air = fleet.air;
+    Gateway::AirStatus air;
     air.budget = _config.Radio.Budget.value_or(0.0);
     air.capacity = capacity.value_or(0.0);
     air.discovery = _discovery.PerSecond;
@@ -67,18 +69,23 @@ void AirReport::Fill(const TransportCounters &counters, std::optional<double> ca
             AddTooLarge(fleet.publications[i].message, "what the channel carries", "", fleet);
         }
         const double rate = _publications[i].Sent.PerSecond;
-        fleet.publications[i].bytes_per_s = rate;
+        fleet.publications[i].bytes_per_s += rate;
         RateOf(ImportanceOf(_config.Publish[i]), air) += rate;
         divided += rate;
     }
     for (Gateway::LinkStatus &link : fleet.links)
     {
+        if (!carries(link.node))
+        {
+            continue;
+        }
         const auto known = _links.find({link.node, link.queue});
         link.bytes_per_s = known == _links.end() ? 0.0 : known->second.PerSecond;
         RateOf(ImportanceOf(_config.Send, link.node, link.queue).Class, air) += link.bytes_per_s;
         divided += link.bytes_per_s;
     }
     air.presence = std::max(0.0, _samples.PerSecond - divided);
+    return air;
 }
 
 std::string AirReport::TextOf(const Gateway::AirStatus &air)
@@ -101,10 +108,10 @@ void AirReport::Measure(const TransportCounters &counters, const std::deque<Topi
     _discovery.Look(counters.DiscoveryBytes, seconds);
     _samples.Look(counters.SampleBytes, seconds);
     _publications.resize(publishers.size());
-    for (std::size_t i = 0; i < publishers.size() && i < fleet.publications.size(); ++i)
+    for (std::size_t i = 0; i < publishers.size(); ++i)
     {
         Publication &publication = _publications[i];
-        const std::uint64_t written = fleet.publications[i].written;
+        const std::uint64_t written = publishers[i].Written();
         const std::size_t each = publishers[i].SampleBytes(_cost);
         publication.Sent.Look(publication.Sent.Bytes + (written - publication.Written) * each, seconds);
         publication.Written = written;

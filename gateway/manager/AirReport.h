@@ -31,12 +31,15 @@ public:
     // The configuration must outlive the object.
     AirReport(const GatewayConfig &config, const AirCost &cost) : _config(config), _cost(cost) {}
 
-    // Fills fleet.air, and the rates of its links and publications, which are there already, the latter in
-    // the order of the publishers. Adds a problem for each publication whose newest value takes more than a
+    // Of the path to the nodes that `carries` tells. Returns its part of fleet.air. Fills in the rates of the
+    // links to these nodes, and adds to those of the publications, which are there already, the latter in the
+    // order of the publishers. Adds a problem for each publication whose newest value takes more than a
     // second of the budget, or of the capacity. `capacity`: estimated capacity of the channel in bytes a
     // second; empty: it does not limit this node.
-    void Fill(const TransportCounters &counters, std::optional<double> capacity,
-              const std::deque<TopicPublisher> &publishers, Gateway::Fleet &fleet, Duration now);
+    Gateway::AirStatus Fill(const TransportCounters &counters, std::optional<double> capacity,
+                            const std::deque<TopicPublisher> &publishers,
+                            const std::function<bool(std::string_view node)> &carries, Gateway::Fleet &fleet,
+                            Duration now);
 
     // The members of the status in their order, as whole numbers with blanks between.
     static std::string TextOf(const Gateway::AirStatus &air);

@@ -272,7 +272,7 @@ Duration AirTraffic::ServeLimited()
     const Duration linksDue = _links.Advance();
     const Duration now = Now();
     LookAtBeat(now);
-    const bool carries = _choice.CarriesAny(_path);
+    const bool carries = _choice.CarriesAny(_path) || _presence.Peers().IsTaken(now);
     for (std::size_t i = 0; i < _publishers.size(); ++i)
     {
         carries ? LookAt(i, now) : _schedule.NotReady(_publisherStreams[i]);
@@ -357,18 +357,19 @@ void AirTraffic::Send(StreamId id, Duration now)
     }
 }
 
-void AirTraffic::Report(Gateway::Fleet &fleet, Duration now)
+Gateway::AirStatus AirTraffic::Report(Gateway::Fleet &fleet, Duration now)
 {
+    const auto carries = [this](std::string_view node) { return _choice.Of(node) == _path; };
     _links.VisitPaths(
-        [&fleet](std::string_view node, const LinkPathState &path)
+        [&fleet, &carries](std::string_view node, const LinkPathState &path)
         {
-            Gateway::NodeStatus *const status = FleetReport::NodeIn(fleet, node);
+            Gateway::NodeStatus *const status = carries(node) ? FleetReport::NodeIn(fleet, node) : nullptr;
             if (status != nullptr && path.DeliveryRate > 0)
             {
                 status->delivery_rate = path.DeliveryRate;
             }
         });
-    _report.Fill(_session->Counters(), _estimate.Rate(now), _publishers, fleet, now);
+    return _report.Fill(_session->Counters(), _estimate.Rate(now), _publishers, carries, fleet, now);
 }
 
 }  // namespace Rabit

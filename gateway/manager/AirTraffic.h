@@ -74,9 +74,9 @@ public:
         _estimate.NothingLate(peer, sentAt, now);
     }
 
-    // Fills the part about the air, and the rates of links and publications, whose rows are in the message
-    // already.
-    void Report(Gateway::Fleet &fleet, Duration now);
+    // Returns this path's part of fleet.air, and fills in the rates of links and publications, whose rows are
+    // in the message already.
+    Gateway::AirStatus Report(Gateway::Fleet &fleet, Duration now);
 
 private:
     bool IsLimited() const { return !_schedule.Budget().IsUnlimited(); }

@@ -35,6 +35,7 @@
 #include "report/LinkStrains.h"
 #include "report/OtherGateways.h"
 #include "report/OwnLog.h"
+#include "report/PathReport.h"
 #include "report/ProblemLog.h"
 #include "report/ProblemTexts.h"
 #include "wire/NodeReports.h"
@@ -330,13 +331,18 @@ private:
         {
             _choice.Unanswered(node, now);
         }
-        for (const std::string &node : _choice.TakeChanged(now))
+        const std::vector<std::string> changed = _choice.TakeChanged(now);
+        for (const std::string &node : changed)
         {
             GatewayPath &path = *_paths[_choice.Of(node)];
             path.Beats().Publish(node);
             path.SubscriptionsAdded(now);
             _links.PathChanged(node);
             change.State = change.Offers = true;
+        }
+        for (std::size_t path = 1; path < _paths.size() && !changed.empty(); ++path)
+        {
+            _paths[path]->Beats().SetTaken(_choice.TakenBy(path));
         }
     }
 
@@ -504,10 +510,7 @@ private:
         fleet.node = _config.Node;
         fleet.incarnation = _incarnation;
         _subscriptions.Report(fleet);
-        for (const TopicPublisher &publisher : _paths.front()->Publishers())
-        {
-            fleet.publications.push_back(publisher.Status());
-        }
+        ReportPublications(fleet);
         fleet.links = _outgoing->Status();
         fleet.inbound = _links.InboundStatus();
         fleet.forgotten = _peers->Forgotten();
@@ -518,8 +521,8 @@ private:
         for (const auto &path : _paths)
         {
             fleet.malformed += path->Beats().Malformed() + path->Types().Malformed();
-            path->Report(fleet, now);
         }
+        ReportAir(fleet, now);
         FleetReport::AddNameProblems(*_peers, fleet);
         AddProblems(now, fleet);
         _foreign.Report(now, fleet);
@@ -557,6 +560,40 @@ private:
                 static_cast<void>(PathOf(peer->Node).Types().Want(problems, now));
             }
         }
+    }
+
+    void ReportPublications(Gateway::Fleet &fleet) const
+    {
+        for (const TopicPublisher &publisher : _paths.front()->Publishers())
+        {
+            fleet.publications.push_back(publisher.Status());
+        }
+        for (std::size_t path = 1; path < _paths.size(); ++path)
+        {
+            for (std::size_t i = 0; i < fleet.publications.size(); ++i)
+            {
+                PathReport::Add(_paths[path]->Publishers()[i].Status(), fleet.publications[i]);
+            }
+        }
+    }
+
+    void ReportAir(Gateway::Fleet &fleet, Duration now)
+    {
+        if (_paths.size() == 1)
+        {
+            fleet.air = _paths.front()->Report(fleet, now);
+            return;
+        }
+        std::vector<std::string> names;
+        for (const auto &path : _paths)
+        {
+            names.push_back(path->Name());
+            Gateway::PathStatus &status = fleet.paths.emplace_back();
+            status.path = path->Name();
+            status.air = path->Report(fleet, now);
+            PathReport::Add(status.air, fleet.air);
+        }
+        PathReport::FillNodes(*_peers, _choice, names, now, fleet);
     }
 
     // Returns a report of this node, for one that requests it; empty: there is none, or it is refused.

@@ -111,15 +111,11 @@ void GatewayPath::TakeDelays(const Presence::Served &served, Duration now)
     }
 }
 
-void GatewayPath::Report(Gateway::Fleet &fleet, Duration now)
-{
-    _air.Report(fleet, now);
-}
-
 void GatewayPath::AddProblems(Gateway::Fleet &fleet, Duration now) const
 {
     if (auto lonely = Loneliness::Look(_config, _presence.Peers(), _session->Counters(), _openedAt, now))
     {
+        lonely->subject = Name().empty() ? lonely->subject : "path " + Name();
         fleet.problems.push_back(std::move(*lonely));
     }
     if (auto ending = KeysProblem(_keysEndAt, std::time(nullptr)))

@@ -107,8 +107,9 @@ public:
     }
     void SubscriptionsAdded(Duration now) { _states.AskAgain(now); }
 
-    // Adds what this path alone can say: rates of the air (of `fleet.air`), and its problems.
-    void Report(Gateway::Fleet &fleet, Duration now);
+    // AirTraffic::Report
+    Gateway::AirStatus Report(Gateway::Fleet &fleet, Duration now) { return _air.Report(fleet, now); }
+    // Adds the problems of this path alone.
     void AddProblems(Gateway::Fleet &fleet, Duration now) const;
 
     const GatewayConfig &Config() const { return _config; }

@@ -26,31 +26,6 @@ std::chrono::milliseconds LeaseOf(const GatewayConfig &config)
 
 }  // namespace
 
-std::vector<GatewayConfig> PathConfigsOf(const GatewayConfig &config)
-{
-    if (config.Paths.empty())
-    {
-        return {config};
-    }
-    std::vector<GatewayConfig> configs;
-    for (const PathRule &path : config.Paths)
-    {
-        GatewayConfig &of = configs.emplace_back(config);
-        of.Paths = {path};
-        of.Transport = path.Transport.empty() ? config.Transport : path.Transport;
-        of.Interfaces = path.Interfaces;
-        of.Peers = path.Peers;
-        of.Multicast = path.Multicast;
-        of.Radio = path.Radio;
-        of.Security = path.Security ? path.Security : config.Security;
-        for (const char *const setting : {"interfaces", "peers", "multicast", "radio.budget"})
-        {
-            of.Lines[setting] = path.Line;
-        }
-    }
-    return configs;
-}
-
 TransportSettings TransportSettingsOf(const GatewayConfig &config, std::uint64_t incarnation)
 {
     TransportSettings settings;

@@ -9,10 +9,6 @@
 namespace Rabit
 {
 
-// The configuration of each path: that of the gateway with the network settings of the path. Of a gateway
-// without `paths` its own.
-std::vector<GatewayConfig> PathConfigsOf(const GatewayConfig &config);
-
 // The transport settings of a gateway with that configuration.
 TransportSettings TransportSettingsOf(const GatewayConfig &config, std::uint64_t incarnation);
 

@@ -71,6 +71,7 @@ public:
     void WriteNext(Duration now);
 
     Gateway::PublicationStatus Status() const;
+    std::uint64_t Written() const { return _written; }  // samples
 
 private:
     using Way = WriteResult (InstanceWriter::*)(const RabitMessage &, std::int64_t);

@@ -138,6 +138,19 @@ std::optional<std::size_t> PathChoice::Second(std::string_view node, Duration no
     return found == _nodes.end() || now >= found->second.SecondUntil ? std::nullopt : found->second.Second;
 }
 
+std::vector<std::string> PathChoice::TakenBy(std::size_t path) const
+{
+    std::vector<std::string> nodes;
+    for (const auto &[name, node] : _nodes)
+    {
+        if (path > 0 && node.Choice == path && node.Ways[path].State != NodeState::LOST)
+        {
+            nodes.push_back(name);
+        }
+    }
+    return nodes;
+}
+
 bool PathChoice::CarriesAny(std::size_t path) const
 {
     bool any = false;

@@ -28,8 +28,8 @@ namespace Rabit
 // For some time after a failure, and if the node itself sends by another path than the chosen one, link
 // frames go by a second path as well (Second), since nobody knows yet which of them arrives.
 //
-// A pure state machine; `now` never goes back. All calls are some comparisons if there is one path. The gateway's
-// thread only.
+// A pure state machine; `now` never goes back. All calls are some comparisons if there is one path. The
+// gateway's thread only.
 class PathChoice
 {
 public:
@@ -61,6 +61,8 @@ public:
     std::size_t Of(std::string_view node) const;
     // A path by which link frames for that node go as well.
     std::optional<std::size_t> Second(std::string_view node, Duration now) const;
+    // The nodes that are reached by that path though there is a better one.
+    std::vector<std::string> TakenBy(std::size_t path) const;
     // True if any node that is not LOST is reached by that path. The first path counts while nobody is known.
     bool CarriesAny(std::size_t path) const;
 

@@ -63,7 +63,8 @@ bool BeatContents::IsPlaceDue(Duration now) const
 
 std::size_t BeatContents::SizeOfMarks() const
 {
-    return (_isTool ? BeatFormat::ToolMark : 0) + (_isReplay ? BeatFormat::ReplayMark : 0);
+    return (_isTool ? BeatFormat::ToolMark : 0) + (_isReplay ? BeatFormat::ReplayMark : 0) +
+           BeatFormat::Taken(std::min(_taken.size(), BeatExtensions::MostTaken));
 }
 
 std::size_t BeatContents::SizeOfStrains() const
@@ -136,6 +137,10 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     if (_isReplay)
     {
         BeatExtensions::MarkReplay(beat);
+    }
+    if (!_taken.empty())
+    {
+        BeatExtensions::SayTaken(beat, _taken);
     }
     DropEmptyNews(beat);
 }

@@ -270,6 +270,10 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     peer.Beats.Add(heard.Sequence);
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
     peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
+    if (BeatExtensions::IsTaken(heard.Beat, _ownTag))
+    {
+        _takenUntil = std::max(_takenUntil, heard.Arrival + peer.StaleAfter());
+    }
     change.State |= TakeProblems(peer, heard);
     change.Beat = true;
     if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())

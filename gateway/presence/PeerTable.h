@@ -153,6 +153,8 @@ public:
     bool OwnNameTwice() const { return _ownTwice; }
     // Where that node runs; empty while it has not told.
     const std::string &OwnTwinPlace() const { return _ownTwinPlace; }
+    // True if a node has said lately that it takes the messages of this node by this path.
+    bool IsTaken(Duration now) const { return now < _takenUntil; }
     // The announcements that this node lacks and requests.
     MissingOffers &Missing() { return _missing; }
     const MissingOffers &Missing() const { return _missing; }
@@ -208,6 +210,7 @@ private:
     Duration _ownTwinSince{0};
     bool _ownTwice = false;
     std::string _ownTwinPlace;
+    Duration _takenUntil{0};
 };
 
 }  // namespace Rabit

@@ -381,6 +381,20 @@ void Presence::NoteDelay(std::string_view node, Duration delay, Duration arrived
     }
 }
 
+void Presence::SetTaken(const std::vector<std::string> &nodes)
+{
+    std::vector<std::uint32_t> tags;
+    for (const std::string &node : nodes)
+    {
+        if (const PeerTable::Peer *peer = _peers.Find(node))
+        {
+            tags.push_back(peer->Tag);
+        }
+    }
+    _contents.SetTaken(std::move(tags));
+    _owesNews = true;
+}
+
 // Both clocks are read at one moment: receivers compute one from the other.
 Gateway::Beat Presence::MakeBeat(const PostTime &time) const
 {

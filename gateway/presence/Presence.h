@@ -149,6 +149,9 @@ public:
     }
     // Sets the troubles of this node's links, which the beats report.
     void SetStrains(std::vector<LinkStrain> strains) { _contents.SetStrains(std::move(strains)); }
+    // Sets the nodes whose messages are taken by this path and by no better one, which the beats tell; the
+    // next beat comes soon.
+    void SetTaken(const std::vector<std::string> &nodes);
     // Sets the number of this node's problems, which the beats tell.
     void SetProblems(const ProblemCount &problems) { _contents.SetProblems(problems); }
     // The texts of types, and the reports of other nodes, that this node lacks, and its beats request.

@@ -24,12 +24,18 @@ inline constexpr std::uint16_t Strain = 4;  // LinkStrains of the sender, in Wan
 inline constexpr std::uint16_t Problems =
     5;  // ProblemCount of the sender, in Wanted::states; none: no problem
 
+// The tags of nodes whose messages the sender takes by this path, and by no better one (gateway/paths), in
+// Wanted::states; no tag: of all nodes.
+inline constexpr std::uint16_t TakenHere = 6;
+
 // Bytes of Wanted::states.
 inline constexpr std::size_t TypeBytes = 16;
 inline constexpr std::size_t StrainBytes = 8;  // of each
 inline constexpr std::size_t ProblemBytes = 6;
 // Most strains that are read from one beat.
 inline constexpr std::size_t MostStrains = 4;
+// Most tags in TakenHere; of more nodes, all are told.
+inline constexpr std::size_t MostTaken = 16;
 
 // The sender lacks the text of a type that a node has announced.
 struct TypeQuestion
@@ -60,5 +66,9 @@ std::vector<LinkStrain> StrainsIn(const Gateway::Beat &beat);
 void Say(Gateway::Beat &beat, const ProblemCount &problems);
 // Empty if the beat does not tell.
 std::optional<ProblemCount> ProblemsIn(const Gateway::Beat &beat);
+
+void SayTaken(Gateway::Beat &beat, std::span<const std::uint32_t> tags);
+// True if the sender takes the messages of the node with that tag by this path.
+bool IsTaken(const Gateway::Beat &beat, std::uint32_t tag);
 
 }  // namespace Rabit::BeatExtensions

@@ -42,6 +42,12 @@ inline constexpr std::size_t ReplayMark = Wanted(0);
 // A ProblemCount.
 inline constexpr std::size_t Problems = Wanted(6);
 
+// The mark that the messages of `nodes` nodes are taken by this path.
+constexpr std::size_t Taken(std::size_t nodes)
+{
+    return nodes == 0 ? 0 : Wanted(4 * nodes);
+}
+
 // A question for a type.
 inline constexpr std::size_t TypeQuestion = Wanted(16);
 inline constexpr std::size_t MostTypeQuestions = 4;

@@ -114,14 +114,17 @@ struct PathRule
 {
     std::string Name;  // with the characters of a node name, each once
     // As in GatewayConfig, for this path alone.
-    std::string Transport;  // empty: that of the gateway
-    std::vector<std::string> Interfaces;
-    std::vector<std::string> Peers;
+    std::string Transport{};  // empty: that of the gateway
+    std::vector<std::string> Interfaces{};
+    std::vector<std::string> Peers{};
     bool Multicast = true;
-    RadioSettings Radio;
+    RadioSettings Radio{};
     std::optional<SecuritySettings> Security{};  // unset: that of the gateway
     int Line = 0;
 };
+
+// Most paths of a gateway.
+inline constexpr std::size_t MostPaths = 8;
 
 // A tool, as the program `rabit`: it looks, asks and sends, and nobody counts on it. It publishes and accepts
 // nothing, the others do not list it, and keep nothing of it once it has gone. README.md (A tool is no node
@@ -235,6 +238,10 @@ struct GatewayConfig
     std::string File;
     std::map<std::string, int> Lines;
 };
+
+// The configuration of each path: the gateway's, with the network settings of the path, and with the path
+// alone under Paths. Of a gateway without Paths its own.
+std::vector<GatewayConfig> PathConfigsOf(const GatewayConfig &config);
 
 // Checks ranges, names used twice, entries that contradict each other or are never used, and that every type
 // is linked into this process. Throws ConfigError. The constructor of GatewayManager calls it; call it

@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "paths/PathChoice.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Gateway::NodeState;
+
+constexpr std::size_t Mesh = 0;
+constexpr std::size_t Modem = 1;
+
+class PathChoiceTest : public ::testing::Test
+{
+protected:
+    void Hear(std::size_t path, NodeState state, PathChoice::Duration now)
+    {
+        choice.Heard("uav1", path, state, now);
+    }
+    std::size_t ChosenAt(PathChoice::Duration now)
+    {
+        changed = choice.TakeChanged(now);
+        return choice.Of("uav1");
+    }
+    // A failure of the mesh at that time, and its return a second later.
+    void FailMesh(PathChoice::Duration now)
+    {
+        Hear(Mesh, NodeState::STALE, now);
+        Hear(Mesh, NodeState::UP, now + 1s);
+    }
+
+    PathChoice choice{2};
+    std::vector<std::string> changed;
+};
+
+TEST_F(PathChoiceTest, ANodeIsReachedByTheFirstPathOnWhichItIsUp)
+{
+    Hear(Modem, NodeState::UP, 0s);
+    EXPECT_EQ(ChosenAt(0s), Modem);
+    Hear(Mesh, NodeState::UP, 1s);
+    EXPECT_EQ(ChosenAt(1s), Mesh);
+    EXPECT_EQ(changed, std::vector<std::string>{"uav1"});
+}
+
+TEST_F(PathChoiceTest, ADeadPathIsLeft)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    Hear(Mesh, NodeState::STALE, 5s);
+    EXPECT_EQ(ChosenAt(5s), Modem);
+}
+
+TEST_F(PathChoiceTest, APathThatReturnsRestsForASecond)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    FailMesh(5s);
+    EXPECT_EQ(ChosenAt(6900ms), Modem);
+    ASSERT_TRUE(choice.Due());
+    EXPECT_EQ(*choice.Due(), 7s);
+    EXPECT_EQ(ChosenAt(7s), Mesh);
+}
+
+TEST_F(PathChoiceTest, APathThatComesAndGoesRestsForLongerAndLonger)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    FailMesh(5s);
+    FailMesh(7s);
+    FailMesh(9s);
+    EXPECT_EQ(ChosenAt(13900ms), Modem);
+    EXPECT_EQ(ChosenAt(14s), Mesh);
+}
+
+TEST_F(PathChoiceTest, APathThatWasSoundForAMinuteRestsForASecondAgain)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    FailMesh(5s);
+    FailMesh(7s);
+    FailMesh(70s);
+    EXPECT_EQ(ChosenAt(72s), Mesh);
+}
+
+TEST_F(PathChoiceTest, IfAllPathsAreDeadTheLastOneStays)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    Hear(Mesh, NodeState::LOST, 5s);
+    Hear(Modem, NodeState::LOST, 6s);
+    EXPECT_EQ(ChosenAt(6s), Modem);
+}
+
+TEST_F(PathChoiceTest, APathThatRestsIsBetterThanNone)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    FailMesh(5s);
+    Hear(Modem, NodeState::LOST, 6s);
+    EXPECT_EQ(ChosenAt(6s), Mesh);
+}
+
+TEST_F(PathChoiceTest, AMissingAnswerIsAReasonForTheOtherPathWhileTheFormerGoesOn)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    choice.Unanswered("uav1", 5s);
+    EXPECT_EQ(ChosenAt(5s), Modem);
+    EXPECT_EQ(choice.Second("uav1", 5s), Mesh);
+    EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both), std::nullopt);
+}
+
+TEST_F(PathChoiceTest, AMissingAnswerChangesNothingIfThereIsNoOtherPath)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    choice.Unanswered("uav1", 5s);
+    EXPECT_EQ(ChosenAt(5s), Mesh);
+    EXPECT_EQ(choice.Second("uav1", 5s), std::nullopt);
+}
+
+TEST_F(PathChoiceTest, WhoSendsByAnotherPathIsAnsweredByBoth)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    choice.CameBy("uav1", Modem, 5s);
+    EXPECT_EQ(ChosenAt(5s), Mesh);
+    EXPECT_EQ(choice.Second("uav1", 5s), Modem);
+}
+
+TEST_F(PathChoiceTest, APathCarriesIfANodeIsReachedByIt)
+{
+    EXPECT_TRUE(choice.CarriesAny(Mesh)) << "before anybody is known";
+    EXPECT_FALSE(choice.CarriesAny(Modem));
+    Hear(Modem, NodeState::UP, 0s);
+    EXPECT_TRUE(choice.CarriesAny(Modem));
+    EXPECT_FALSE(choice.CarriesAny(Mesh));
+}
+
+TEST(PathChoiceOfOnePath, IsThatPath)
+{
+    PathChoice choice{1};
+    choice.Heard("uav1", 0, NodeState::LOST, 0s);
+    EXPECT_EQ(choice.Of("uav1"), 0U);
+    EXPECT_TRUE(choice.CarriesAny(0));
+}
+
+}  // namespace
+}  // namespace Rabit

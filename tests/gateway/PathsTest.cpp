@@ -1,0 +1,377 @@
+// Nodes with two radios: a mesh that is fast, and a modem that is slow.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "SimulatedFleet.h"
+
+namespace Rabit
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+using Duration = std::chrono::nanoseconds;
+
+constexpr Duration Start = 100s;  // of the nodes' clocks
+constexpr Duration Step = 5ms;
+constexpr Duration CommandPeriod = 20ms;
+
+GatewayConfig OverBoth(GatewayConfig config, std::optional<double> modemBudget = {})
+{
+    config.Paths.push_back({.Name = "mesh"});
+    config.Paths.push_back({.Name = "modem", .Radio = {.Budget = modemBudget}});
+    return config;
+}
+
+class PathsTest : public ::testing::Test
+{
+protected:
+    struct Process
+    {
+        Process(const std::shared_ptr<ManualClock> &clock) : Workspace(clock), Reactor(Workspace) {}
+        RabitWorkspace Workspace;
+        RabitSteppedReactor Reactor;
+    };
+
+    PathsTest() { modem.SetFaults("*", "*", {.Delay = 40ms}); }
+
+    void Add(const std::string &name, const GatewayConfig &config, const std::string &queue)
+    {
+        auto process = std::make_unique<Process>(clock);
+        auto manager = std::make_unique<IdleManager>(queue, process->Workspace);
+        managers[name] = manager.get();
+        process->Reactor.AddManager(std::move(manager));
+        std::vector<std::shared_ptr<Transport>> transports;
+        for (const PathRule &path : config.Paths)
+        {
+            transports.push_back(std::make_shared<SimulatedTransport>(path.Name == "mesh" ? mesh : modem));
+        }
+        process->Reactor.AddManager(std::make_unique<GatewayManager>(
+            config, transports, process->Workspace,
+            [engine = std::mt19937_64(processes.size() + 1)]() mutable { return engine(); }));
+        if (!config.Publish.empty())
+        {
+            auto &message = poses[name];
+            message = std::make_shared<Uav::Pose>();
+            process->Workspace.AddPublishSubscribeMessage("Pose", message);
+            auto &mission = missions[name];
+            mission = std::make_shared<Uav::MissionState>();
+            process->Workspace.AddPublishSubscribeMessage("MissionState", mission);
+        }
+        process->Reactor.Start();
+        if (missions.count(name) > 0)
+        {
+            missions[name]->PostMessage();
+        }
+        processes[name] = std::move(process);
+    }
+
+    // A ground station, and an aircraft that posts its pose ten times a second.
+    void AddBoth(std::optional<double> modemBudget = {})
+    {
+        Add("ground", OverBoth(GroundConfig(), modemBudget), "Commands");
+        Add("uav1", OverBoth(AircraftConfig("uav1"), modemBudget), "MissionControl");
+    }
+
+    void RunFor(Duration duration)
+    {
+        for (Duration run = 0s; run < duration; run += Step)
+        {
+            clock->AdvanceTo(clock->Monotonic() + Step);
+            for (SimulatedNetwork *network : {&mesh, &modem})
+            {
+                network->AdvanceTo(clock->Monotonic() - Start);
+            }
+            passed += Step;
+            if (passed % 100ms == 0s)
+            {
+                for (auto &[name, pose] : poses)
+                {
+                    ++pose->number;
+                    pose->PostMessage();
+                }
+            }
+            for (auto &[name, process] : processes)
+            {
+                process->Reactor.RunDue();
+            }
+            TakeCommands();
+        }
+    }
+
+    // The ground station sends a command each 20 ms.
+    void Command(Duration duration)
+    {
+        for (Duration run = 0s; run < duration; run += CommandPeriod)
+        {
+            auto command = std::make_shared<Uav::Goto>();
+            command->id = static_cast<std::uint32_t>(++sent);
+            EXPECT_TRUE(processes["ground"]->Workspace.AddMessageToQueue("uav1/MissionControl", command));
+            RunFor(CommandPeriod);
+        }
+    }
+
+    void TakeCommands()
+    {
+        if (managers.count("uav1") == 0)
+        {
+            return;
+        }
+        std::shared_ptr<RabitMessage> message;
+        while (managers["uav1"]->GetManagerMessageQueue()->GetMessage(message))
+        {
+            const auto &command = dynamic_cast<const Uav::Goto &>(*message);
+            ASSERT_EQ(command.id, static_cast<std::uint32_t>(got + 1)) << "lost, twice or out of order";
+            ++got;
+            if (lastCommandAt != 0s)
+            {
+                longestGap = std::max(longestGap, passed - lastCommandAt);
+            }
+            lastCommandAt = passed;
+        }
+    }
+
+    Gateway::Fleet FleetOf(const std::string &name)
+    {
+        Gateway::Fleet fleet;
+        processes[name]->Workspace.ForceFetchMessage("Gateway/Fleet", &fleet);
+        return fleet;
+    }
+
+    std::string StateAtGround()
+    {
+        const Gateway::Fleet fleet = FleetOf("ground");
+        const Gateway::NodeStatus *status = Gateway::FindNode(fleet, "uav1");
+        return status == nullptr ? "" : ToString(status->state);
+    }
+
+    // Seconds since the post of the newest pose that the ground station has.
+    double AgeAtGround()
+    {
+        Uav::Pose pose;
+        processes["ground"]->Workspace.ForceFetchMessage("uav1/Pose", &pose);
+        return pose.GetAgeSeconds(*clock);
+    }
+
+    void Cut(SimulatedNetwork &network, bool cut)
+    {
+        network.SetFaults("*", "*",
+                          {.Delay = &network == &modem ? Duration(40ms) : Duration(1ms), .Cut = cut});
+    }
+
+    std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>(1.0e9, Start);
+    SimulatedNetwork mesh{1};
+    SimulatedNetwork modem{2};
+    std::map<std::string, IdleManager *> managers;
+    std::map<std::string, std::shared_ptr<Uav::Pose>> poses;
+    std::map<std::string, std::shared_ptr<Uav::MissionState>> missions;
+    std::map<std::string, std::unique_ptr<Process>> processes;
+    Duration passed{0};
+    int sent = 0;
+    int got = 0;
+    Duration lastCommandAt{0};
+    Duration longestGap{0};
+};
+
+TEST_F(PathsTest, ANodeOverTwoPathsIsOneNode)
+{
+    AddBoth();
+    RunFor(3s);
+    const Gateway::Fleet fleet = FleetOf("ground");
+    EXPECT_EQ(fleet.nodes.size(), 1U);
+    EXPECT_EQ(StateAtGround(), "UP");
+    EXPECT_TRUE(fleet.problems.empty()) << fleet.problems.front().reason;
+}
+
+TEST_F(PathsTest, WhileTheFirstPathIsSoundEachCommandComesOnceAndTheSecondCarriesLittle)
+{
+    AddBoth();
+    RunFor(3s);
+    const std::uint64_t meshBefore = mesh.Sent("ground").Bytes;
+    const std::uint64_t modemBefore = modem.Sent("ground").Bytes;
+    Command(10s);
+    RunFor(500ms);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(modem.Sent("ground").Bytes - modemBefore, (mesh.Sent("ground").Bytes - meshBefore) / 10);
+}
+
+TEST_F(PathsTest, IfThePathInUseDiesCommandsComeByTheOtherWithinAQuarterOfASecond)
+{
+    AddBoth();
+    RunFor(3s);
+    Command(2s);
+    Cut(mesh, true);
+    Command(5s);
+    RunFor(1s);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(longestGap, 250ms);
+}
+
+TEST_F(PathsTest, IfThePathInUseDiesTheNodeStaysUpAndItsPoseStaysFresh)
+{
+    AddBoth();
+    RunFor(3s);
+    Cut(mesh, true);
+    double oldest = 0;
+    for (int i = 0; i < 100; ++i)
+    {
+        RunFor(50ms);
+        EXPECT_EQ(StateAtGround(), "UP");
+        oldest = std::max(oldest, AgeAtGround());
+    }
+    EXPECT_LT(AgeAtGround(), 0.2);
+    EXPECT_LT(oldest, 2.0);
+}
+
+TEST_F(PathsTest, AStateThatIsPostedWhileTheFirstPathIsDeadComes)
+{
+    AddBoth();
+    RunFor(3s);
+    Cut(mesh, true);
+    RunFor(500ms);
+    missions["uav1"]->commands = 7;
+    missions["uav1"]->PostMessage();
+    RunFor(2s);
+    Uav::MissionState state;
+    processes["ground"]->Workspace.ForceFetchMessage("uav1/MissionState", &state);
+    EXPECT_EQ(state.commands, 7U);
+}
+
+TEST_F(PathsTest, ThePathThatReturnsIsTakenAgain)
+{
+    AddBoth();
+    RunFor(3s);
+    Cut(mesh, true);
+    Command(3s);
+    Cut(mesh, false);
+    RunFor(5s);
+    const std::uint64_t before = modem.Sent("ground").Bytes;
+    Command(5s);
+    RunFor(500ms);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(modem.Sent("ground").Bytes - before, 5000U);
+}
+
+TEST_F(PathsTest, IfOnlyTheWayOutIsDeadCommandsComeByTheOtherPath)
+{
+    AddBoth();
+    RunFor(3s);
+    Command(1s);
+    mesh.SetFaults("ground", "uav1", {.Cut = true});
+    Command(5s);
+    RunFor(1s);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(longestGap, 250ms);
+}
+
+TEST_F(PathsTest, IfOnlyTheWayToTheGroundIsDeadThePoseComesByTheOtherPath)
+{
+    AddBoth();
+    RunFor(3s);
+    mesh.SetFaults("uav1", "ground", {.Cut = true});
+    RunFor(5s);
+    EXPECT_EQ(StateAtGround(), "UP");
+    EXPECT_LT(AgeAtGround(), 0.3);
+}
+
+TEST_F(PathsTest, APathThatComesAndGoesLosesNothing)
+{
+    AddBoth();
+    RunFor(3s);
+    for (int i = 0; i < 10; ++i)
+    {
+        Cut(mesh, i % 2 == 0);
+        Command(2s);
+    }
+    RunFor(2s);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(longestGap, 250ms);
+}
+
+TEST_F(PathsTest, TheBudgetOfTheModemHoldsWhileItCarriesEverything)
+{
+    constexpr double budget = 3000;
+    AddBoth(budget);
+    RunFor(10s);
+    Cut(mesh, true);
+    RunFor(3s);
+    std::uint64_t before = modem.Sent("uav1").Bytes;
+    std::uint64_t worst = 0;
+    for (int i = 0; i < 20; ++i)
+    {
+        RunFor(1s);
+        worst = std::max(worst, modem.Sent("uav1").Bytes - before);
+        before = modem.Sent("uav1").Bytes;
+    }
+    EXPECT_LE(worst, static_cast<std::uint64_t>(budget * 1.05));
+    EXPECT_EQ(StateAtGround(), "UP");
+}
+
+// Faults of both networks at random: cut in one direction or both, lossy, slow, reordering.
+class PathsUnderFaults : public PathsTest, public ::testing::WithParamInterface<int>
+{
+protected:
+    SimulatedFaults AnyFaults()
+    {
+        SimulatedFaults faults;
+        const auto among = [this](int count)
+        { return static_cast<int>(chance() % static_cast<unsigned>(count)); };
+        faults.Cut = among(3) == 0;
+        faults.Loss = among(2) == 0 ? 0.05 * among(10) : 0.0;
+        faults.Duplicate = 0.02 * among(5);
+        faults.Delay = std::chrono::milliseconds(1 + among(100));
+        faults.Jitter = std::chrono::milliseconds(among(60));
+        return faults;
+    }
+
+    std::mt19937_64 chance{static_cast<std::uint64_t>(GetParam())};
+};
+
+TEST_P(PathsUnderFaults, EachCommandComesOnceAndInOrder)
+{
+    AddBoth(GetParam() % 2 == 0 ? std::optional<double>() : 4000);
+    RunFor(2s);
+    for (int step = 0; step < 12; ++step)
+    {
+        SimulatedNetwork &network = chance() % 3 == 0 ? modem : mesh;
+        const bool both = chance() % 2 == 0;
+        network.SetFaults("ground", "uav1", AnyFaults());
+        if (both)
+        {
+            network.SetFaults("uav1", "ground", AnyFaults());
+        }
+        Command(std::chrono::milliseconds(200 + chance() % 2000));
+    }
+    Cut(mesh, false);
+    Cut(modem, false);
+    RunFor(20s);
+    EXPECT_EQ(got, sent);
+    EXPECT_EQ(StateAtGround(), "UP");
+    EXPECT_LT(AgeAtGround(), 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, PathsUnderFaults, ::testing::Range(0, 200));
+
+TEST_F(PathsTest, AnAircraftWithTheModemAloneAndOneWithBothAreReached)
+{
+    GatewayConfig far = AircraftConfig("uav1");
+    far.Paths.push_back({.Name = "modem"});
+    Add("ground", OverBoth(GroundConfig()), "Commands");
+    Add("uav1", far, "MissionControl");
+    RunFor(3s);
+    Command(1s);
+    RunFor(500ms);
+    EXPECT_EQ(got, sent);
+    EXPECT_LT(AgeAtGround(), 0.3);
+}
+
+}  // namespace
+}  // namespace Rabit
