@@ -289,7 +289,7 @@ int Watch(const Options &options)
     if (config.Record)
         reactor.AddManager(std::make_unique<Rabit::RecorderManager>(config));
     reactor.AddManager(
-        std::make_unique<Rabit::GatewayManager>(config, Rabit::MakeTransport(config.Transport)));
+        std::make_unique<Rabit::GatewayManager>(config, Rabit::TransportsOf(config, Rabit::MakeTransport)));
     {
         const EndOnSignal endOnSignal(theCommander);
         reactor.Run();

@@ -514,17 +514,20 @@ void ValidateGatewayConfig(const GatewayConfig &config)
 void ValidateTransportName(const GatewayConfig &config, const std::vector<std::string> &available,
                            const std::vector<std::string> &known)
 {
-    const auto isIn = [&config](const std::vector<std::string> &names)
-    { return std::find(names.begin(), names.end(), config.Transport) != names.end(); };
-    if (isIn(available))
+    const auto isIn = [](const std::vector<std::string> &names, const std::string &name)
+    { return std::find(names.begin(), names.end(), name) != names.end(); };
+    for (const GatewayConfig &path : PathConfigsOf(config))
     {
-        return;
+        const std::string &name = path.Transport;
+        if (isIn(available, name))
+        {
+            continue;
+        }
+        const auto line = path.Lines.find("transport");
+        throw ConfigError(config.File, line == path.Lines.end() ? 0 : line->second,
+                          (isIn(known, name) ? "this build is without the transport `" : "unknown transport `") +
+                              name + "`" + NearestWordHint(name, available));
     }
-    const auto line = config.Lines.find("transport");
-    const std::string hint = NearestWordHint(config.Transport, available);
-    throw ConfigError(config.File, line == config.Lines.end() ? 0 : line->second,
-                      isIn(known) ? "this build is without the transport `" + config.Transport + "`" + hint
-                                  : "unknown transport `" + config.Transport + "`" + hint);
 }
 
 }  // namespace Rabit

@@ -105,6 +105,14 @@ void AirTraffic::Reported(CapacityEstimate::Peer peer, Duration delay, Duration 
     SetLimit(now);
 }
 
+bool AirTraffic::MayTakeCopy(std::string_view node, std::string_view queue, std::size_t bytes)
+{
+    const Duration now = Now();
+    Watch(now);  // pays for the copies before this one
+    return (queue.empty() || ImportanceOf(_config.Send, node, queue).Class != TrafficClass::Bulk) &&
+           _schedule.Room(bytes, now) >= bytes;
+}
+
 std::size_t AirTraffic::TakeSent()
 {
     const TransportCounters counters = _session->Counters();
@@ -272,7 +280,7 @@ Duration AirTraffic::ServeLimited()
     const Duration linksDue = _links.Advance();
     const Duration now = Now();
     LookAtBeat(now);
-    const bool carries = _choice.CarriesAny(_path) || _presence.Peers().IsTaken(now);
+    const bool carries = _choice.CarriesAny(_path);
     for (std::size_t i = 0; i < _publishers.size(); ++i)
     {
         carries ? LookAt(i, now) : _schedule.NotReady(_publisherStreams[i]);

@@ -264,7 +264,12 @@ private:
         _peers.emplace(std::move(tables), _choice);
         if (_paths.size() > 1)
         {
-            _links.SetSecondPath([this](std::string_view node) { return _choice.Second(node, Now()); });
+            _links.SetSecondPath(
+                [this](std::string_view node, std::string_view queue, std::size_t bytes)
+                {
+                    const std::optional<std::size_t> second = _choice.Second(node, Now());
+                    return second && _paths[*second]->MayTakeCopy(node, queue, bytes) ? second : std::nullopt;
+                });
         }
     }
 
@@ -280,11 +285,8 @@ private:
         {
             for (const PeerTable::Peer *peer : beats.Peers().Heard())
             {
-                _choice.Heard(peer->Node, path, peer->State, now);
-                for (const auto &other : _paths)
-                {
-                    other->Beats().Adopt(*peer);
-                }
+                _choice.Heard(peer->Node, path, peer->State, peer->HearsHereFirst, now);
+                ShareOffers(*peer, beats, change);
             }
         }
         if (heard.NewLife)
@@ -299,6 +301,20 @@ private:
         change.NewLife |= heard.NewLife;
     }
 
+    // An announcement that has come by one path need not come by the others.
+    void ShareOffers(const PeerTable::Peer &peer, Presence &beats, Heard &change)
+    {
+        for (const auto &path : _paths)
+        {
+            const PeerTable::Peer *const other = path->Beats().Peers().Find(peer.Node);
+            if (other != nullptr && other != &peer)
+            {
+                const bool isNew = path->Beats().Adopt(peer) || beats.Adopt(*other);
+                change.Offers |= isNew;
+            }
+        }
+    }
+
     void Forget(const std::string &node, std::size_t path, Duration now)
     {
         const bool isKnownElsewhere =
@@ -306,7 +322,7 @@ private:
                         [&node](const auto &other) { return other->Beats().Peers().Find(node) != nullptr; });
         if (isKnownElsewhere)
         {
-            _choice.Heard(node, path, Gateway::NodeState::LOST, now);
+            _choice.Heard(node, path, Gateway::NodeState::LOST, false, now);
             return;
         }
         _choice.Forget(node);
@@ -329,10 +345,12 @@ private:
         }
         for (const std::string &node : _links.Unanswered())
         {
-            _choice.Unanswered(node, now);
+            if (_choice.Unanswered(node, now))
+            {
+                _links.ProbeNow(node);
+            }
         }
-        const std::vector<std::string> changed = _choice.TakeChanged(now);
-        for (const std::string &node : changed)
+        for (const std::string &node : _choice.TakeChanged(now))
         {
             GatewayPath &path = *_paths[_choice.Of(node)];
             path.Beats().Publish(node);
@@ -340,9 +358,9 @@ private:
             _links.PathChanged(node);
             change.State = change.Offers = true;
         }
-        for (std::size_t path = 1; path < _paths.size() && !changed.empty(); ++path)
+        for (std::size_t path = 1; path < _paths.size() && (change.State || change.NewLife); ++path)
         {
-            _paths[path]->Beats().SetTaken(_choice.TakenBy(path));
+            _paths[path]->Beats().SetFirstHeard(_choice.FirstHeardOn(path));
         }
     }
 
@@ -699,6 +717,18 @@ private:
     std::vector<std::unique_ptr<GatewayPath>> _paths;
     std::optional<PeersOverPaths> _peers;
 };
+
+std::vector<std::shared_ptr<Transport>> TransportsOf(
+    const GatewayConfig &config,
+    const std::function<std::shared_ptr<Transport>(const std::string &name)> &make)
+{
+    std::vector<std::shared_ptr<Transport>> transports;
+    for (const GatewayConfig &path : PathConfigsOf(config))
+    {
+        transports.push_back(make(path.Transport));
+    }
+    return transports;
+}
 
 GatewayManager::GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport)
     : GatewayManager(config, std::move(transport), *RabitWorkspace::GetWorkspace())

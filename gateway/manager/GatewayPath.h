@@ -100,6 +100,12 @@ public:
         return next;
     }
 
+    // True if a copy of a frame of the links, of that size on the air, may go by this path now.
+    bool MayTakeCopy(std::string_view node, std::string_view queue, std::size_t bytes)
+    {
+        return _air.MayTakeCopy(node, queue, bytes);
+    }
+
     // Matches the States of a node with the subscriptions.
     void SetWanted(const PeerTable::Peer &peer, const std::vector<StateRepair::Wanted> &states)
     {

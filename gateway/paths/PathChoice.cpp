@@ -26,7 +26,8 @@ void PathChoice::Fail(Way &way, Duration now)
     way.RestsUntil = now + way.RestFor;
 }
 
-void PathChoice::Heard(const std::string &node, std::size_t path, NodeState state, Duration now)
+void PathChoice::Heard(const std::string &node, std::size_t path, NodeState state, bool hearsHereFirst,
+                       Duration now)
 {
     if (_paths == 1)
     {
@@ -34,16 +35,17 @@ void PathChoice::Heard(const std::string &node, std::size_t path, NodeState stat
     }
     Node &of = NodeOf(node);
     Way &way = of.Ways.at(path);
+    const bool heard = std::exchange(way.HearsHereFirst, hearsHereFirst);
     const NodeState before = std::exchange(way.State, state);
-    if (before == state)
+    if (before == state && heard == hearsHereFirst)
     {
         return;
     }
-    if (before == NodeState::UP)
+    if (before == NodeState::UP && state != NodeState::UP)
     {
         Fail(way, now);
     }
-    else if (state == NodeState::UP && way.RestsUntil)
+    else if (before != NodeState::UP && state == NodeState::UP && way.RestsUntil)
     {
         // The rest begins when the path is there again.
         way.RestsUntil = now + way.RestFor;
@@ -51,7 +53,28 @@ void PathChoice::Heard(const std::string &node, std::size_t path, NodeState stat
     Choose(node, of, now);
 }
 
-void PathChoice::Unanswered(const std::string &node, Duration now)
+bool PathChoice::Unanswered(const std::string &node, Duration now)
+{
+    const auto found = _nodes.find(node);
+    if (_paths == 1 || found == _nodes.end())
+    {
+        return false;
+    }
+    Node &of = found->second;
+    for (std::size_t path = 0; path < _paths; ++path)
+    {
+        if (path != of.Choice && of.Ways[path].State == NodeState::UP)
+        {
+            const bool isNew = Second(node, now) != path;
+            of.Second = path;
+            of.SecondSince = now;
+            return isNew;
+        }
+    }
+    return false;
+}
+
+void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
 {
     const auto found = _nodes.find(node);
     if (_paths == 1 || found == _nodes.end())
@@ -59,36 +82,25 @@ void PathChoice::Unanswered(const std::string &node, Duration now)
         return;
     }
     Node &of = found->second;
-    const bool hasOther = std::any_of(of.Ways.begin(), of.Ways.end(),
-                                      [&of](const Way &way)
-                                      { return &way != &of.Ways[of.Choice] && way.State == NodeState::UP; });
-    if (!hasOther || (of.Second && now < of.SecondUntil))
+    of.Ways[path].CameAt = now;
+    if (path != of.Choice && now - of.Ways[of.Choice].CameAt >= Silence)
     {
-        return;
+        of.Second = path;
+        of.SecondSince = now;
     }
-    const std::size_t before = of.Choice;
-    Fail(of.Ways[before], now);
-    Choose(node, of, now);
-    of.Second = before;
-    of.SecondUntil = now + Both;
-}
-
-void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
-{
-    const auto found = _nodes.find(node);
-    if (_paths == 1 || found == _nodes.end() || found->second.Choice == path)
-    {
-        return;
-    }
-    found->second.Second = path;
-    found->second.SecondUntil = now + Both;
 }
 
 void PathChoice::Choose(const std::string &name, Node &node, Duration now)
 {
-    std::optional<std::size_t> rested;  // the first that is UP and rests
+    // By a path before this one the node does not hear this node.
+    std::size_t first = 0;
+    for (std::size_t path = 0; path < _paths; ++path)
+    {
+        first = node.Ways[path].State == NodeState::UP && node.Ways[path].HearsHereFirst ? path : first;
+    }
+    std::optional<std::size_t> rested;  // that is UP and rests
     std::optional<std::size_t> chosen;
-    for (std::size_t path = 0; path < _paths && !chosen; ++path)
+    for (std::size_t path = first; path < _paths && !chosen; ++path)
     {
         const Way &way = node.Ways[path];
         if (way.State == NodeState::UP && (!way.RestsUntil || *way.RestsUntil <= now))
@@ -106,9 +118,6 @@ void PathChoice::Choose(const std::string &name, Node &node, Duration now)
     if (std::exchange(node.Choice, next) != next)
     {
         _changed.push_back(name);
-    }
-    if (node.Second == node.Choice)
-    {
         node.Second.reset();
     }
 }
@@ -135,15 +144,23 @@ std::size_t PathChoice::Of(std::string_view node) const
 std::optional<std::size_t> PathChoice::Second(std::string_view node, Duration now) const
 {
     const auto found = _paths == 1 ? _nodes.end() : _nodes.find(node);
-    return found == _nodes.end() || now >= found->second.SecondUntil ? std::nullopt : found->second.Second;
+    if (found == _nodes.end() || !found->second.Second)
+    {
+        return std::nullopt;
+    }
+    const Node &of = found->second;
+    const bool isOver = now - of.SecondSince >= Both && of.Ways[of.Choice].CameAt > of.SecondSince;
+    return isOver ? std::nullopt : of.Second;
 }
 
-std::vector<std::string> PathChoice::TakenBy(std::size_t path) const
+std::vector<std::string> PathChoice::FirstHeardOn(std::size_t path) const
 {
     std::vector<std::string> nodes;
     for (const auto &[name, node] : _nodes)
     {
-        if (path > 0 && node.Choice == path && node.Ways[path].State != NodeState::LOST)
+        const auto up = std::find_if(node.Ways.begin(), node.Ways.end(),
+                                     [](const Way &way) { return way.State == NodeState::UP; });
+        if (path > 0 && up - node.Ways.begin() == static_cast<std::ptrdiff_t>(path))
         {
             nodes.push_back(name);
         }

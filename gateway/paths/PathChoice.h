@@ -1,7 +1,6 @@
 #pragma once
 
 #include <rabit/base/Backoff.h>
-
 #include <rabit/gateway/Fleet.h>
 
 #include <chrono>
@@ -19,14 +18,15 @@ namespace Rabit
 // Chooses the path by which each other node is reached. Paths are numbered in the order of the configuration,
 // the best first.
 //
-// A node is reached by the first path on which it is UP and which has not failed lately. A path fails for a
-// node when the node stops being UP on it, and when queue messages remain unanswered on it. After a failure
-// another path is preferred for a second, and twice as long after each further failure, up to half a minute.
-// A path that has not failed for a minute counts as sound again. So a path that comes and goes is left alone.
-// If the node is UP on no path, the choice stays as it was.
-//
-// For some time after a failure, and if the node itself sends by another path than the chosen one, link
-// frames go by a second path as well (Second), since nobody knows yet which of them arrives.
+// - A node is reached by the first path on which it is UP, which has not failed lately, and by which the node
+//   hears this one: each node says of others that it hears them by a later path alone.
+// - A path fails for a node when the node stops being UP on it. After it is UP again, other paths are
+//   preferred for a second, and twice as long after each further failure, up to half a minute. A path that
+//   has not failed for a minute counts as sound again. So a path that comes and goes is left alone.
+// - If the node is UP on no path, the choice stays as it was.
+// - While queue messages for a node are unanswered for longer than usual, and while the node itself sends by
+//   another path, link frames go by a second path as well (Second), since nobody knows yet which of them
+//   arrives. That ends after some time, if the node has been heard on the chosen path since.
 //
 // A pure state machine; `now` never goes back. All calls are some comparisons if there is one path. The
 // gateway's thread only.
@@ -35,8 +35,10 @@ class PathChoice
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // How long a second path is used as well.
+    // How long a second path is used as well, at least.
     static constexpr Duration Both = std::chrono::seconds(2);
+    // Frames that come by another path are a sign if none has come by the chosen one for this long.
+    static constexpr Duration Silence = std::chrono::milliseconds(100);
     static constexpr Backoff::Settings Rest{.First = std::chrono::seconds(1),
                                             .Longest = std::chrono::seconds(30)};
     static constexpr Duration Sound = std::chrono::seconds(60);
@@ -44,11 +46,14 @@ public:
     explicit PathChoice(std::size_t paths) : _paths(paths) {}
 
     std::size_t Paths() const { return _paths; }
-    // The state of the node on a path, as its beats there tell.
-    void Heard(const std::string &node, std::size_t path, Gateway::NodeState state, Duration now);
-    // A queue message for the node remains unanswered for longer than usual.
-    void Unanswered(const std::string &node, Duration now);
-    // A frame of the links came from the node by that path.
+    // The state of the node on a path, as its beats there tell, and whether they say that it hears this node
+    // by that path and by no better one.
+    void Heard(const std::string &node, std::size_t path, Gateway::NodeState state, bool hearsHereFirst,
+               Duration now);
+    // A queue message for the node remains unanswered for longer than usual. Returns true if frames go by a
+    // second path from now on.
+    bool Unanswered(const std::string &node, Duration now);
+    // A new frame of the links came from the node by that path before it came by another.
     void CameBy(const std::string &node, std::size_t path, Duration now);
     // The node is known on no path any more.
     void Forget(const std::string &node) { _nodes.erase(node); }
@@ -61,8 +66,8 @@ public:
     std::size_t Of(std::string_view node) const;
     // A path by which link frames for that node go as well.
     std::optional<std::size_t> Second(std::string_view node, Duration now) const;
-    // The nodes that are reached by that path though there is a better one.
-    std::vector<std::string> TakenBy(std::size_t path) const;
+    // The nodes that are UP on that path and on no better one, though there are better ones.
+    std::vector<std::string> FirstHeardOn(std::size_t path) const;
     // True if any node that is not LOST is reached by that path. The first path counts while nobody is known.
     bool CarriesAny(std::size_t path) const;
 
@@ -70,17 +75,19 @@ private:
     struct Way
     {
         Gateway::NodeState State = Gateway::NodeState::LOST;
+        bool HearsHereFirst = false;
         Backoff Rest{PathChoice::Rest};
         Duration RestFor{0};  // after the last failure
         std::optional<Duration> RestsUntil;
         std::optional<Duration> FailedAt;
+        Duration CameAt = -Silence;  // the last frame of the links that came by it first
     };
     struct Node
     {
         std::vector<Way> Ways;
         std::size_t Choice = 0;
         std::optional<std::size_t> Second;
-        Duration SecondUntil{0};
+        Duration SecondSince{0};
     };
 
     Node &NodeOf(const std::string &node);

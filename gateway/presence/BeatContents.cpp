@@ -64,7 +64,7 @@ bool BeatContents::IsPlaceDue(Duration now) const
 std::size_t BeatContents::SizeOfMarks() const
 {
     return (_isTool ? BeatFormat::ToolMark : 0) + (_isReplay ? BeatFormat::ReplayMark : 0) +
-           BeatFormat::Taken(std::min(_taken.size(), BeatExtensions::MostTaken));
+           BeatFormat::FirstHeard(std::min(_firstHeard.size(), BeatExtensions::MostFirstHeard));
 }
 
 std::size_t BeatContents::SizeOfStrains() const
@@ -138,9 +138,9 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     {
         BeatExtensions::MarkReplay(beat);
     }
-    if (!_taken.empty())
+    if (!_firstHeard.empty())
     {
-        BeatExtensions::SayTaken(beat, _taken);
+        BeatExtensions::SayFirstHeard(beat, _firstHeard);
     }
     DropEmptyNews(beat);
 }

@@ -65,9 +65,9 @@ public:
     // reports them.
     void SetStrains(std::vector<LinkStrain> strains) { _strains = std::move(strains); }
 
-    // Sets the nodes whose messages are taken by this path and by no better one, by their tags, which each
-    // beat from now on tells.
-    void SetTaken(std::vector<std::uint32_t> tags) { _taken = std::move(tags); }
+    // Sets the nodes that are heard by this path and by no better one, by their tags, which each beat from
+    // now on tells.
+    void SetFirstHeard(std::vector<std::uint32_t> tags) { _firstHeard = std::move(tags); }
 
     // Time between two beats that tell the number of this node's problems. After a change, or if somebody has
     // come, some beats in a row tell it.
@@ -106,7 +106,7 @@ private:
     bool _isTool = false;
     bool _isReplay = false;
     std::vector<LinkStrain> _strains;
-    std::vector<std::uint32_t> _taken;
+    std::vector<std::uint32_t> _firstHeard;
     ProblemCount _problems;
     int _problemBeats = 0;  // that tell it in a row
     Duration _problemsSaid{0};

@@ -270,10 +270,8 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     peer.Beats.Add(heard.Sequence);
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
     peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
-    if (BeatExtensions::IsTaken(heard.Beat, _ownTag))
-    {
-        _takenUntil = std::max(_takenUntil, heard.Arrival + peer.StaleAfter());
-    }
+    const bool hearsHereFirst = BeatExtensions::IsFirstHeardHere(heard.Beat, _ownTag);
+    change.State |= std::exchange(peer.HearsHereFirst, hearsHereFirst) != hearsHereFirst;
     change.State |= TakeProblems(peer, heard);
     change.Beat = true;
     if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())
@@ -366,19 +364,20 @@ void PeerTable::CompareOffers(Peer &peer, const HeardBeat &heard, Change &change
     _missing.LetGo(peer.Node);
 }
 
-void PeerTable::Adopt(const Peer &elsewhere)
+bool PeerTable::Adopt(const Peer &elsewhere)
 {
     const auto found = _peers.find(elsewhere.Node);
     if (found == _peers.end() || !elsewhere.Offers || found->second.Incarnation != elsewhere.Incarnation ||
         found->second.BeatsOffers != elsewhere.OffersDigest || found->second.HasPresentOffers())
     {
-        return;
+        return false;
     }
     Peer &peer = found->second;
     peer.Offers = elsewhere.Offers;
     peer.OffersDigest = elsewhere.OffersDigest;
     peer.OffersSince = elsewhere.OffersSince;
     _missing.LetGo(peer.Node);
+    return true;
 }
 
 PeerTable::Change PeerTable::OnGoodbye(const HeardBeat &heard)

@@ -62,8 +62,10 @@ public:
         bool IsTool = false;              // UP as long as it is kept; it has no offers and no states
         bool IsReplay = false;            // it plays a recording
         std::vector<LinkStrain> Strains;  // as its newest beat reports them
-        ProblemCount Problems;            // as its beats told last, now and then
-        bool HasToldProblems = false;     // since its incarnation is heard
+        // It hears this node by this path and by no better one (gateway/paths), as its newest beat says.
+        bool HearsHereFirst = false;
+        ProblemCount Problems;         // as its beats told last, now and then
+        bool HasToldProblems = false;  // since its incarnation is heard
         Duration ProblemsTold{0};
         Gateway::NodeState State = Gateway::NodeState::LOST;
         std::string Reason;
@@ -133,8 +135,8 @@ public:
     // The transport saw the node close its session.
     Change OnLeft(const std::string &node, std::uint64_t incarnation);
     // Takes over the announcement of a node, if its beats here have the same digest, so that it need not be
-    // requested by this path.
-    void Adopt(const Peer &elsewhere);
+    // requested by this path. Returns true if this table lacked it.
+    bool Adopt(const Peer &elsewhere);
     // Lets time pass.
     Change Advance(Duration now);
     // When Advance would next change something; empty: not before the next input.
@@ -153,8 +155,6 @@ public:
     bool OwnNameTwice() const { return _ownTwice; }
     // Where that node runs; empty while it has not told.
     const std::string &OwnTwinPlace() const { return _ownTwinPlace; }
-    // True if a node has said lately that it takes the messages of this node by this path.
-    bool IsTaken(Duration now) const { return now < _takenUntil; }
     // The announcements that this node lacks and requests.
     MissingOffers &Missing() { return _missing; }
     const MissingOffers &Missing() const { return _missing; }
@@ -210,7 +210,6 @@ private:
     Duration _ownTwinSince{0};
     bool _ownTwice = false;
     std::string _ownTwinPlace;
-    Duration _takenUntil{0};
 };
 
 }  // namespace Rabit

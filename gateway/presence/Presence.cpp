@@ -381,8 +381,13 @@ void Presence::NoteDelay(std::string_view node, Duration delay, Duration arrived
     }
 }
 
-void Presence::SetTaken(const std::vector<std::string> &nodes)
+void Presence::SetFirstHeard(const std::vector<std::string> &nodes)
 {
+    if (nodes == _firstHeard)
+    {
+        return;
+    }
+    _firstHeard = nodes;
     std::vector<std::uint32_t> tags;
     for (const std::string &node : nodes)
     {
@@ -391,7 +396,7 @@ void Presence::SetTaken(const std::vector<std::string> &nodes)
             tags.push_back(peer->Tag);
         }
     }
-    _contents.SetTaken(std::move(tags));
+    _contents.SetFirstHeard(std::move(tags));
     _owesNews = true;
 }
 

@@ -100,8 +100,17 @@ public:
     const Served &LastServed() const { return _served; }
     // This object speaks of that node from now on.
     void Publish(const std::string &node);
-    // The announcement of a node, which has come by another path.
-    void Adopt(const PeerTable::Peer &elsewhere) { _peers.Adopt(elsewhere); }
+    // Takes over the announcement of a node, which has come by another path. Returns true if this path lacked
+    // it.
+    bool Adopt(const PeerTable::Peer &elsewhere)
+    {
+        const bool isNew = _peers.Adopt(elsewhere);
+        if (isNew && _speaksOf(elsewhere.Node))
+        {
+            Publish(elsewhere.Node);
+        }
+        return isNew;
+    }
     // When to call Service again at the latest.
     Duration NextDue() const;
 
@@ -149,9 +158,9 @@ public:
     }
     // Sets the troubles of this node's links, which the beats report.
     void SetStrains(std::vector<LinkStrain> strains) { _contents.SetStrains(std::move(strains)); }
-    // Sets the nodes whose messages are taken by this path and by no better one, which the beats tell; the
-    // next beat comes soon.
-    void SetTaken(const std::vector<std::string> &nodes);
+    // Sets the nodes that are heard by this path and by no better one, which the beats tell. After a change
+    // the next beat comes soon.
+    void SetFirstHeard(const std::vector<std::string> &nodes);
     // Sets the number of this node's problems, which the beats tell.
     void SetProblems(const ProblemCount &problems) { _contents.SetProblems(problems); }
     // The texts of types, and the reports of other nodes, that this node lacks, and its beats request.
@@ -202,6 +211,7 @@ private:
     BeatContents _contents;
     bool _isTool = false;
     bool _owesNews = false;  // a large delay, to be reported before the next beat is due
+    std::vector<std::string> _firstHeard;
     RecentProblems _otherFormats;
     PresenceInbox _inbox;
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "names/NamePattern.h"
+#include "presence/PeerTable.h"
 #include "queues/LinkStatus.h"
 #include "queues/SendOptions.h"
 #include "wire/LinkSampleCodec.h"
@@ -173,7 +174,7 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way)
             }
             if (_ways.size() > 1)
             {
-                NoteCame(info.Node, way.Number);
+                NoteCame(info, frame.Time, way.Number);
             }
         }
         NoteRaises(now);
@@ -194,18 +195,32 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way)
     frame.Data.Items.clear();  // they point to bytes that are only borrowed
 }
 
-void LinkDriver::NoteCame(std::string_view name, std::size_t path)
+void LinkDriver::NoteCame(const SampleInfo &info, std::int64_t time, std::size_t path)
 {
-    auto node = _cameBy.find(name);
-    node = node == _cameBy.end() ? _cameBy.emplace(name, 0).first : node;
-    node->second |= std::uint32_t{1} << path;
+    auto node = _came.find(info.Node);
+    if (node == _came.end() && _came.size() < PeerTable::MaximumPeers)
+    {
+        node = _came.emplace(info.Node, Came()).first;
+    }
+    if (node != _came.end() && (node->second.Incarnation != info.Incarnation || time > node->second.Newest))
+    {
+        node->second.Incarnation = info.Incarnation;
+        node->second.Newest = time;
+        node->second.By |= std::uint32_t{1} << path;
+    }
 }
 
 std::map<std::string, std::uint32_t> LinkDriver::TakeCameBy()
 {
     const std::lock_guard lock(_mutex);
-    std::map<std::string, std::uint32_t> cameBy(_cameBy.begin(), _cameBy.end());
-    _cameBy.clear();
+    std::map<std::string, std::uint32_t> cameBy;
+    for (auto &[node, came] : _came)
+    {
+        if (came.By != 0)
+        {
+            cameBy.emplace(node, std::exchange(came.By, 0));
+        }
+    }
     return cameBy;
 }
 
@@ -215,6 +230,12 @@ std::vector<std::string> LinkDriver::Unanswered() const
     std::vector<std::string> nodes;
     _links->VisitUnanswered(Now(), [&nodes](std::string_view node) { nodes.emplace_back(node); });
     return nodes;
+}
+
+void LinkDriver::ProbeNow(const std::string &node)
+{
+    const std::lock_guard lock(_mutex);
+    _links->ProbeNow(node, Now());
 }
 
 void LinkDriver::PathChanged(const std::string &node)
@@ -384,6 +405,7 @@ bool LinkDriver::HasPending(const std::string &node) const
 void LinkDriver::Forget(const std::string &node)
 {
     const std::lock_guard lock(_mutex);
+    _came.erase(node);
     // Not if something was enqueued for it at this moment.
     static_cast<void>(_links->Forget(node));
 }

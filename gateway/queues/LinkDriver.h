@@ -66,7 +66,8 @@ public:
     // Close. Throws TransportError.
     void Open(TransportSession &session);
     // Sets who tells by which path frames for a node go besides the path of SendOne. Before Open.
-    using SecondPath = std::function<std::optional<std::size_t>(std::string_view node)>;
+    using SecondPath = std::function<std::optional<std::size_t>(std::string_view node, std::string_view queue,
+                                                                std::size_t bytesOnTheAir)>;
     void SetSecondPath(SecondPath second) { _second = std::move(second); }
     // Sends nothing more and receives nothing more. Messages without an outcome get one. Cannot be reopened.
     void Close();
@@ -92,10 +93,12 @@ public:
         std::size_t path, Duration now,
         const std::function<void(const std::string &node, Duration delay, Duration arrivedAt)> &take);
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
-    // With several paths. The nodes whose frames have come by a path since the last call, and by which ones
-    // (bit i: the i-th); and the nodes of which an answer is missing for longer than usual.
+    // With several paths. The nodes of which new frames have come since the last call, and the paths by which
+    // they came first (bit i: the i-th); and the nodes of which an answer is missing for longer than usual.
     std::map<std::string, std::uint32_t> TakeCameBy();
     std::vector<std::string> Unanswered() const;
+    // Frames for that node go by a second path, too: the unanswered ones are sent again at once.
+    void ProbeNow(const std::string &node);
     // Frames for that node go by another path from now on: what was measured of the former one does not hold.
     void PathChanged(const std::string &node);
     // The shortest round trip to that node, with nothing waiting; 0: not known.
@@ -187,8 +190,8 @@ private:
     // Without the mutex: decodes the large messages that are complete, and has the links deliver them. For
     // threads that may take that long; every call of the links that may complete a message comes before one.
     void DecodeLarge(News &news);
-    // With the mutex: notes that a frame of that node has come by that path.
-    void NoteCame(std::string_view name, std::size_t path);
+    // With the mutex: notes the path by which a frame has come.
+    void NoteCame(const SampleInfo &info, std::int64_t time, std::size_t path);
     // With the mutex: notes that another live node must have this name, if this one's incarnation was raised
     // too often.
     void NoteRaises(LinkTime now);
@@ -227,7 +230,15 @@ private:
     std::vector<std::unique_ptr<Way>> _ways;
     std::size_t _open = 0;  // of these
     SecondPath _second;
-    std::map<std::string, std::uint32_t, std::less<>> _cameBy;  // guarded; only with several paths
+    // Of each node, with several paths: the time by its clock of the newest frame, and the paths by which new
+    // frames came before they came by another. Guarded.
+    struct Came
+    {
+        std::uint64_t Incarnation = 0;
+        std::int64_t Newest = 0;
+        std::uint32_t By = 0;
+    };
+    std::map<std::string, Came, std::less<>> _came;
 
     std::atomic<bool> _anyDelays{false};  // changed with the mutex held
     RecentProblems _recent;               // other versions of the links, and another node of this name

@@ -1,4 +1,6 @@
 // The sending half of LinkDriver: by itself, or one datagram at a time for a scheduler.
+#include <rabit/gateway/links/LinkFrameCodec.h>
+
 #include <utility>
 
 #include "clocks/GpsTime.h"
@@ -8,6 +10,13 @@
 
 namespace Rabit
 {
+namespace
+{
+
+// Of IPv4, UDP, RTPS and the encapsulation, for a frame.
+constexpr std::size_t AboutTheHeaders = 110;
+
+}  // namespace
 
 LinkDriver::Duration LinkDriver::Service()
 {
@@ -58,10 +67,14 @@ void LinkDriver::WriteOut(std::size_t path)
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
         Write(datagram, writer, sourceTime);
-        const std::optional<std::size_t> second = _second ? _second(datagram.Destination) : std::nullopt;
-        if (second && *second != path)
+        if (_second)
         {
-            Write(datagram, WriterOf(*second), sourceTime);
+            const std::size_t bytes = LinkFrameCodec::EncodedSize(datagram.Frame) + AboutTheHeaders;
+            const std::optional<std::size_t> second = _second(datagram.Destination, datagram.Queue, bytes);
+            if (second && *second != path)
+            {
+                Write(datagram, WriterOf(*second), sourceTime);
+            }
         }
     }
     _sending.Clear();

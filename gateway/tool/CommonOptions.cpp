@@ -137,6 +137,7 @@ GatewayConfig ConfigOf(const CommonOptions &options)
     if (!options.Interfaces.empty())
     {
         config.Interfaces = options.Interfaces;
+        config.Paths.clear();
     }
     config.StateDir.clear();
     config.Tool.emplace();

@@ -73,7 +73,7 @@ FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &opt
     RabitLog::SetLevel(options.Verbose ? RabitLogLevel::Warning : RabitLogLevel::Error);
     try
     {
-        auto gateway = std::make_unique<GatewayManager>(config, MakeTransport(config.Transport), _workspace);
+        auto gateway = std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport), _workspace);
         _explorer = &gateway->Explorer();
         _reactor.AddManager(std::move(gateway));
     }

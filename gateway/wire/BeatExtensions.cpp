@@ -128,31 +128,31 @@ void Say(Gateway::Beat &beat, const ProblemCount &problems)
     Add(beat, Problems).states.assign(bytes.begin(), bytes.end());
 }
 
-void SayTaken(Gateway::Beat &beat, std::span<const std::uint32_t> tags)
+void SayFirstHeard(Gateway::Beat &beat, std::span<const std::uint32_t> tags)
 {
     std::vector<std::uint8_t> bytes;
-    for (const std::uint32_t tag : tags.size() > MostTaken ? std::span<const std::uint32_t>() : tags)
+    for (const std::uint32_t tag : tags.size() > MostFirstHeard ? std::span<const std::uint32_t>() : tags)
     {
         Put(tag, bytes);
     }
-    Add(beat, TakenHere).states.assign(bytes.begin(), bytes.end());
+    Add(beat, FirstHeardHere).states.assign(bytes.begin(), bytes.end());
 }
 
-bool IsTaken(const Gateway::Beat &beat, std::uint32_t tag)
+bool IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag)
 {
     for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
     {
-        if (wanted.node != Nobody || wanted.offers != TakenHere)
+        if (wanted.node != Nobody || wanted.offers != FirstHeardHere)
         {
             continue;
         }
-        bool isTaken = wanted.states.empty();
+        bool isHeard = wanted.states.empty();
         std::span<const std::uint8_t> bytes(wanted.states.data(), wanted.states.size());
         while (bytes.size() >= sizeof(tag))
         {
-            isTaken |= Take<std::uint32_t>(bytes) == tag;
+            isHeard |= Take<std::uint32_t>(bytes) == tag;
         }
-        return isTaken;
+        return isHeard;
     }
     return false;
 }

@@ -24,9 +24,9 @@ inline constexpr std::uint16_t Strain = 4;  // LinkStrains of the sender, in Wan
 inline constexpr std::uint16_t Problems =
     5;  // ProblemCount of the sender, in Wanted::states; none: no problem
 
-// The tags of nodes whose messages the sender takes by this path, and by no better one (gateway/paths), in
-// Wanted::states; no tag: of all nodes.
-inline constexpr std::uint16_t TakenHere = 6;
+// The tags of nodes that the sender hears by this path and by no better one (gateway/paths), in
+// Wanted::states; no tag: all nodes.
+inline constexpr std::uint16_t FirstHeardHere = 6;
 
 // Bytes of Wanted::states.
 inline constexpr std::size_t TypeBytes = 16;
@@ -34,8 +34,8 @@ inline constexpr std::size_t StrainBytes = 8;  // of each
 inline constexpr std::size_t ProblemBytes = 6;
 // Most strains that are read from one beat.
 inline constexpr std::size_t MostStrains = 4;
-// Most tags in TakenHere; of more nodes, all are told.
-inline constexpr std::size_t MostTaken = 16;
+// Most tags in FirstHeardHere; if there are more, all nodes are meant.
+inline constexpr std::size_t MostFirstHeard = 16;
 
 // The sender lacks the text of a type that a node has announced.
 struct TypeQuestion
@@ -67,8 +67,7 @@ void Say(Gateway::Beat &beat, const ProblemCount &problems);
 // Empty if the beat does not tell.
 std::optional<ProblemCount> ProblemsIn(const Gateway::Beat &beat);
 
-void SayTaken(Gateway::Beat &beat, std::span<const std::uint32_t> tags);
-// True if the sender takes the messages of the node with that tag by this path.
-bool IsTaken(const Gateway::Beat &beat, std::uint32_t tag);
+void SayFirstHeard(Gateway::Beat &beat, std::span<const std::uint32_t> tags);
+bool IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag);
 
 }  // namespace Rabit::BeatExtensions

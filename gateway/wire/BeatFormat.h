@@ -42,8 +42,8 @@ inline constexpr std::size_t ReplayMark = Wanted(0);
 // A ProblemCount.
 inline constexpr std::size_t Problems = Wanted(6);
 
-// The mark that the messages of `nodes` nodes are taken by this path.
-constexpr std::size_t Taken(std::size_t nodes)
+// The mark that `nodes` nodes are heard by this path and no better one.
+constexpr std::size_t FirstHeard(std::size_t nodes)
 {
     return nodes == 0 ? 0 : Wanted(4 * nodes);
 }

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace Rabit
 {
@@ -248,6 +249,50 @@ std::string ErrorIn(const std::function<void()> &use)
         return text.substr(text.rfind('/') + 1);
     }
     return "no error";
+}
+
+TEST_F(GatewayConfigTest, APathHasNetworkSettingsOfItsOwn)
+{
+    const GatewayConfig config = Load(R"(node: uav1
+transport: cyclonedds
+security: {keys: keys/uav1}
+paths:
+  - {name: mesh, interfaces: [wlan0]}
+  - {name: modem, transport: fastdds, interfaces: [ppp0], peers: [10.8.0.1], multicast: off,
+     radio: {budget: 1500B/s}, security: {keys: other/uav1}}
+)");
+    ASSERT_EQ(config.Paths.size(), 2U);
+    const std::vector<GatewayConfig> paths = PathConfigsOf(config);
+    EXPECT_EQ(paths[0].Transport, "cyclonedds");
+    EXPECT_EQ(paths[0].Interfaces, std::vector<std::string>{"wlan0"});
+    EXPECT_EQ(paths[0].Security->Keys, "keys/uav1");
+    EXPECT_EQ(paths[1].Transport, "fastdds");
+    EXPECT_EQ(paths[1].Peers, std::vector<std::string>{"10.8.0.1"});
+    EXPECT_FALSE(paths[1].Multicast);
+    EXPECT_EQ(paths[1].Radio.Budget, 1500.0);
+    EXPECT_EQ(paths[1].Security->Keys, "other/uav1");
+}
+
+TEST_F(GatewayConfigTest, WithoutPathsThereIsOneWithTheSettingsOfTheGateway)
+{
+    const std::vector<GatewayConfig> paths = PathConfigsOf(Load("node: a\ninterfaces: [eth0]\n"));
+    ASSERT_EQ(paths.size(), 1U);
+    EXPECT_EQ(paths[0].Interfaces, std::vector<std::string>{"eth0"});
+}
+
+TEST_F(GatewayConfigTest, MistakesInPathsNameTheirLine)
+{
+    EXPECT_EQ(ErrorOf("node: a\npaths:\n  - {interfaces: [wlan0]}\n"),
+              "node.yaml:3: a `paths` entry needs the key `name`");
+    EXPECT_EQ(ErrorOf("node: a\npaths:\n  - {name: m}\n  - {name: m}\n"),
+              "node.yaml:4: `m` stands twice under `paths` (first in line 3)");
+    EXPECT_EQ(ErrorOf("node: a\ninterfaces: [eth0]\npaths:\n  - {name: m}\n"),
+              "node.yaml:2: with `paths`, `interfaces` belongs to a path");
+    EXPECT_EQ(ErrorOf("node: a\npaths:\n  - name: m\n    radio: {budget: 1B/s}\n").substr(0, 50),
+              "node.yaml:4: the budget is too small to say that t");
+    EXPECT_EQ(ErrorOf("node: a\npaths:\n  - {name: m, interface: wlan0}\n").substr(0, 12), "node.yaml:3:");
+    EXPECT_EQ(ErrorOf("node: a\npaths:\n  - {name: m/n}\n"),
+              "node.yaml:3: `m/n` is no path name; expected 1 to 64 of A-Z a-z 0-9 _ . -");
 }
 
 TEST_F(GatewayConfigTest, AParameterOfAnotherKindOrRangeIsNamedWithItsLine)

@@ -20,7 +20,7 @@ class PathChoiceTest : public ::testing::Test
 protected:
     void Hear(std::size_t path, NodeState state, PathChoice::Duration now)
     {
-        choice.Heard("uav1", path, state, now);
+        choice.Heard("uav1", path, state, false, now);
     }
     std::size_t ChosenAt(PathChoice::Duration now)
     {
@@ -105,14 +105,44 @@ TEST_F(PathChoiceTest, APathThatRestsIsBetterThanNone)
     EXPECT_EQ(ChosenAt(6s), Mesh);
 }
 
-TEST_F(PathChoiceTest, AMissingAnswerIsAReasonForTheOtherPathWhileTheFormerGoesOn)
+TEST_F(PathChoiceTest, WhileAnAnswerIsMissingFramesGoByBothPaths)
 {
     Hear(Mesh, NodeState::UP, 0s);
     Hear(Modem, NodeState::UP, 0s);
     choice.Unanswered("uav1", 5s);
-    EXPECT_EQ(ChosenAt(5s), Modem);
-    EXPECT_EQ(choice.Second("uav1", 5s), Mesh);
+    EXPECT_EQ(ChosenAt(5s), Mesh);
+    EXPECT_EQ(choice.Second("uav1", 5s), Modem);
+}
+
+TEST_F(PathChoiceTest, BothPathsAreUsedUntilTheNodeIsHeardOnTheChosenOne)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    choice.Unanswered("uav1", 5s);
+    EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both), Modem);
+    choice.CameBy("uav1", Mesh, 6s);
+    EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both - 1ms), Modem);
     EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both), std::nullopt);
+}
+
+TEST_F(PathChoiceTest, ANodeThatHearsThisOneByALaterPathAloneIsReachedByThat)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    choice.Heard("uav1", Modem, NodeState::UP, true, 5s);
+    EXPECT_EQ(ChosenAt(5s), Modem);
+    choice.Heard("uav1", Modem, NodeState::UP, false, 6s);
+    EXPECT_EQ(ChosenAt(6s), Mesh);
+}
+
+TEST_F(PathChoiceTest, TellsWhichNodesAreHeardByALaterPathAlone)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    EXPECT_TRUE(choice.FirstHeardOn(Modem).empty());
+    Hear(Mesh, NodeState::STALE, 5s);
+    EXPECT_EQ(choice.FirstHeardOn(Modem), std::vector<std::string>{"uav1"});
+    EXPECT_TRUE(choice.FirstHeardOn(Mesh).empty());
 }
 
 TEST_F(PathChoiceTest, AMissingAnswerChangesNothingIfThereIsNoOtherPath)
@@ -144,7 +174,7 @@ TEST_F(PathChoiceTest, APathCarriesIfANodeIsReachedByIt)
 TEST(PathChoiceOfOnePath, IsThatPath)
 {
     PathChoice choice{1};
-    choice.Heard("uav1", 0, NodeState::LOST, 0s);
+    choice.Heard("uav1", 0, NodeState::LOST, false, 0s);
     EXPECT_EQ(choice.Of("uav1"), 0U);
     EXPECT_TRUE(choice.CarriesAny(0));
 }

@@ -191,6 +191,18 @@ TEST_F(PathsTest, ANodeOverTwoPathsIsOneNode)
     EXPECT_TRUE(fleet.problems.empty()) << fleet.problems.front().reason;
 }
 
+TEST_F(PathsTest, AnAnnouncementThatCameByTheSecondPathCountsForBoth)
+{
+    mesh.SetFaults("*", "*", {.Delay = 40ms});
+    modem.SetFaults("*", "*", {.Delay = 1ms});
+    AddBoth();
+    RunFor(1s);
+    Command(1s);
+    RunFor(1s);
+    EXPECT_EQ(got, sent);
+    EXPECT_GT(got, 0);
+}
+
 TEST_F(PathsTest, WhileTheFirstPathIsSoundEachCommandComesOnceAndTheSecondCarriesLittle)
 {
     AddBoth();

@@ -10,10 +10,32 @@
 #include <chrono>
 #include <exception>
 #include <iostream>
+#include <sstream>
+#include <string>
 #include <utility>
 
 namespace TestNode
 {
+
+namespace
+{
+
+Rabit::PathRule PathIn(const std::string &text)
+{
+    std::istringstream words(text);
+    Rabit::PathRule path;
+    std::string budget;
+    std::getline(words, path.Name, ':');
+    std::getline(words, path.Transport, ':');
+    std::getline(words, path.Interfaces.emplace_back(), ':');
+    if (std::getline(words, budget))
+    {
+        path.Radio.Budget = std::stod(budget);
+    }
+    return path;
+}
+
+}  // namespace
 
 void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
 {
@@ -41,6 +63,16 @@ void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
         "With keys, only sign");
     app.add_option("--budget", config.Radio.Budget, "Bytes a second that the node may put on the air");
     app.add_option("--slowest-beat", config.Radio.SlowestBeat, "Milliseconds");
+    app.add_option_function<std::vector<std::string>>(
+        "--path",
+        [&config](const std::vector<std::string> &paths)
+        {
+            for (const std::string &text : paths)
+            {
+                config.Paths.push_back(PathIn(text));
+            }
+        },
+        "NAME:TRANSPORT:INTERFACE[:BUDGET], the best first; in place of --interface and --budget");
     app.add_option_function<int>(
         "--lease", [&config](int seconds) { config.Lease = std::chrono::seconds(seconds); },
         "DDS lease, in seconds");
@@ -55,9 +87,14 @@ void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::
     {
         reactor.AddManager(std::move(manager));
     }
-    std::shared_ptr<Rabit::Transport> backend = Rabit::MakeTransport(config.Transport);
     reactor.AddManager(std::make_unique<Rabit::GatewayManager>(
-        config, wrap ? wrap(std::move(backend)) : std::move(backend)));
+        config, Rabit::TransportsOf(config,
+                                    [&wrap](const std::string &name)
+                                    {
+                                        std::shared_ptr<Rabit::Transport> backend =
+                                            Rabit::MakeTransport(name);
+                                        return wrap ? wrap(std::move(backend)) : backend;
+                                    })));
     reactor.Run();
 }
 

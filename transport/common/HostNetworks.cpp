@@ -54,6 +54,11 @@ HostNetwork ToNetwork(const ifaddrs &entry)
 
 }  // namespace
 
+std::optional<std::uint32_t> HostNetwork::Number() const
+{
+    return Parse(Address);
+}
+
 bool HostNetwork::Contains(const std::string &address) const
 {
     const auto own = Parse(Address);

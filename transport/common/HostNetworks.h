@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,6 +29,8 @@ struct HostNetwork
     }
     // Same address on the same interface: sockets opened on it work again when it returns.
     bool IsSame(const HostNetwork &other) const { return Index == other.Index && Address == other.Address; }
+    // The address as a number, in host order; empty: none.
+    std::optional<std::uint32_t> Number() const;
     // True if the address belongs to this network, by its mask. False if it does not parse.
     bool Contains(const std::string &address) const;
 };

@@ -110,6 +110,14 @@ void LinkNode::VisitUnanswered(LinkTime now, const std::function<void(std::strin
     }
 }
 
+void LinkNode::ProbeNow(std::string_view node, LinkTime now)
+{
+    if (LinkPeer *const peer = FindPeer(node))
+    {
+        peer->ProbeNow(now);
+    }
+}
+
 void LinkNode::PathChanged(std::string_view node, LinkTime now)
 {
     if (LinkPeer *const peer = FindPeer(node))

@@ -128,9 +128,14 @@ void LinkPeer::PathChanged(LinkTime now)
 {
     _path.Replace();
     _askedSince = LinkNever;
+    ProbeNow(now);
+}
+
+void LinkPeer::ProbeNow(LinkTime now)
+{
     for (LinkSender *sender : _byNumber)
     {
-        sender->PathChanged(now);
+        sender->ProbeNow(now);
     }
 }
 

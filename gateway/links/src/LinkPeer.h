@@ -54,11 +54,14 @@ public:
     bool IsUnheardAt(LinkTime now) const { return now - _heardAt >= _context.Settings.SilentAfter; }
     LinkTime HeardAt() const { return _heardAt; }
 
-    // True if a frame that asks is unanswered for longer than answers take.
+    // True if a frame that asks is unanswered for longer than answers take. A wireless network may well be silent for
+    // some tens of milliseconds.
+    static constexpr LinkTime ShortestDoubt = std::chrono::milliseconds(100);
     bool IsUnansweredAt(LinkTime now) const
     {
-        return _askedSince != LinkNever && now - _askedSince > _path.ProbeTimeout();
+        return _askedSince != LinkNever && now - _askedSince > std::max(_path.ProbeTimeout(), ShortestDoubt);
     }
+    void ProbeNow(LinkTime now);
     // Frames go by another path from now on.
     void PathChanged(LinkTime now);
 

@@ -263,7 +263,7 @@ void LinkSender::OnPeerHeard(LinkTime now)
     }
 }
 
-void LinkSender::PathChanged(LinkTime now)
+void LinkSender::ProbeNow(LinkTime now)
 {
     _doublings = 0;
     _bytesInVain = 0;

@@ -62,9 +62,8 @@ public:
     void OnEcho(LinkTime echo);
     // A frame came from the peer after a silence: the wait for the probe timer ends.
     void OnPeerHeard(LinkTime now);
-    // Frames go by another path from now on. Those under way on the former one may be lost: a probe goes at
-    // once.
-    void PathChanged(LinkTime now);
+    // If frames are under way, a probe goes at once, and the wait for the next one is the shortest again.
+    void ProbeNow(LinkTime now);
     // Rules S5 and S6: the receiver, or this node, has a new incarnation. The stream starts anew.
     void Restart();
     // Reports everything pending as never to be delivered, or in doubt.

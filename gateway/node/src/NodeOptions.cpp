@@ -30,6 +30,10 @@ void Override(GatewayConfig &config, const NodeOptions &options)
             config.Security.emplace();
         }
         config.Security->Keys = options.Keys;
+        for (PathRule &path : config.Paths)
+        {
+            path.Security.reset();
+        }
     }
     ValidateTransportName(config, AvailableTransports(), KnownTransports());
 }
@@ -77,6 +81,7 @@ GatewayConfig LoadNodeConfig(const NodeOptions &options)
     if (!options.Interfaces.empty())
     {
         config.Interfaces = options.Interfaces;
+        config.Paths.clear();
     }
     if (!options.Record.empty())
     {
@@ -89,9 +94,12 @@ GatewayConfig LoadNodeConfig(const NodeOptions &options)
     Override(config, options);
     if (options.Check)
     {
-        for (const std::string &missing : CheckTransportSettings(config, *MakeTransport(config.Transport)))
+        for (const GatewayConfig &path : PathConfigsOf(config))
         {
-            std::cerr << missing << " (it is waited for)\n";
+            for (const std::string &missing : CheckTransportSettings(path, *MakeTransport(path.Transport)))
+            {
+                std::cerr << missing << " (it is waited for)\n";
+            }
         }
     }
     return config;

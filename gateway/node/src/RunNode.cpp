@@ -68,7 +68,7 @@ int RunNode(int argc, char **argv, const NodeProgram &program)
             {
                 reactor.AddManager(std::make_unique<RecorderManager>(config));
             }
-            reactor.AddManager(std::make_unique<GatewayManager>(config, MakeTransport(config.Transport)));
+            reactor.AddManager(std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport)));
             reactor.Run();  // until SIGINT or SIGTERM
             return 0;
         });

@@ -215,6 +215,10 @@ public:
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
                  const rtps::Locator_t &local, const rtps::Locator_t &remote) override
     {
+        if (IsGroup(local) && !_descriptor.Chosen().Networks.MayComeFrom(HostOf(remote)))
+        {
+            return;
+        }
         // This is the vendor's receive buffer, which is not reused before this returns.
         const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
         if (Meeting() != nullptr && IsCardMessage(datagram))

@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "common/KeyExchangeThread.h"
+#include "common/OwnNetworks.h"
 #include "guard/AuthenticationThread.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/MeetingThread.h"
@@ -69,6 +70,8 @@ public:
         std::optional<eprosima::fastrtps::rtps::Locator_t> SampleGroup{};
         // Peers are listed; they may not hear the group.
         bool HasPeers = false;
+        // The networks of the named interfaces.
+        OwnNetworks Networks{{}, {}};
     };
 
     GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,

@@ -5,6 +5,10 @@
 #include <rabit/gateway/RandomSource.h>
 #include <rabit/transport/Transport.h>
 
+#include <rabit/RabitWorkspace.h>
+#include <functional>
+#include <vector>
+#include <string>
 #include <memory>
 
 namespace Rabit
@@ -20,6 +24,12 @@ inline std::string FleetMessageNameOf(const GatewayConfig &config)
 {
     return config.Name + "/Fleet";
 }
+
+// Makes the transport of each path of the configuration, in their order: GatewayManager(config,
+// TransportsOf(config, MakeTransport)). A gateway without `paths` has one.
+std::vector<std::shared_ptr<Transport>> TransportsOf(
+    const GatewayConfig &config,
+    const std::function<std::shared_ptr<Transport>(const std::string &name)> &make);
 
 // Joins this process to the other nodes of its domain.
 //
@@ -65,7 +75,8 @@ public:
     // Takes one transport for each of GatewayConfig::Paths, in their order; the former constructors use one for
     // all. Throws std::invalid_argument if there are not as many transports as paths.
     GatewayManager(const GatewayConfig &config, std::vector<std::shared_ptr<Transport>> transports,
-                   RabitWorkspace &workspace, RandomSource random = SystemRandom);
+                   RabitWorkspace &workspace = *RabitWorkspace::GetWorkspace(),
+                   RandomSource random = SystemRandom);
     ~GatewayManager() override;
 
     // Returns the view of the fleet that tools use: announcements, types, subscriptions at run time. Valid as

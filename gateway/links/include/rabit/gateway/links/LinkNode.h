@@ -152,6 +152,8 @@ public:
     // Calls the function for each node that has not answered a frame for longer than its answers usually
     // take.
     void VisitUnanswered(LinkTime now, const std::function<void(std::string_view node)> &visit) const;
+    // Does not wait for the answers of that node: sends a probe on each link at once.
+    void ProbeNow(std::string_view node, LinkTime now);
     // Frames for that node go by another path from now on: what was measured of the former one does not hold.
     void PathChanged(std::string_view node, LinkTime now);
     // The shortest round trip to that node, measured anew now and then with nothing waiting; 0: not known, or
