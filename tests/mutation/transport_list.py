@@ -200,6 +200,10 @@ MUTATIONS = [
           "numbers.Highest = numbers.Samples.Highest();", ""),
     # Participants that are not authenticated
     guard("an authenticated participant is forgotten", "AuthenticationRetries.cpp", "|| peer.IsAuthenticated ||", "||"),
+    guard("an authenticated participant that begins anew is not asked", "AuthenticationRetries.cpp", "peer.IsToAsk = true;", ""),
+    guard("keys give a participant that does not answer more time", "AuthenticationRetries.cpp", "peer.Keys = MostKeys;", ""),
+    guard("a participant is asked again and again", "AuthenticationRetries.cpp", "std::exchange(peer.IsToAsk, false)",
+          "peer.IsToAsk"),
     guard("a participant that is silent is tried again", "AuthenticationRetries.cpp",
           "|| peer.AnnouncedAt <= peer.ProgressAt", ""),
     guard("repetitions are progress", "AuthenticationRetries.cpp", "if ((known.Steps & bit) == 0)", "if (true)"),

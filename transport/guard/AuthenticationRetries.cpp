@@ -1,6 +1,7 @@
 #include "guard/AuthenticationRetries.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace Rabit::Rtps
 {
@@ -53,6 +54,10 @@ void AuthenticationRetries::Exchanged(const GuidPrefix &peer, Step step, bool is
         return;
     }
     Peer &known = found->second;
+    if (!isSent && (step == Step::Request || step == Step::Ask))
+    {
+        BeginsAnew(known, now);
+    }
     if (step == Step::Keys && known.Keys < MostKeys)
     {
         ++known.Keys;
@@ -66,6 +71,26 @@ void AuthenticationRetries::Exchanged(const GuidPrefix &peer, Step step, bool is
     }
 }
 
+void AuthenticationRetries::SaidGoodbye(const GuidPrefix &peer, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end())
+    {
+        BeginsAnew(found->second, now);
+    }
+}
+
+void AuthenticationRetries::BeginsAnew(Peer &peer, TimePoint now)
+{
+    if (peer.IsKnown && peer.IsAuthenticated)
+    {
+        peer.IsAuthenticated = false;
+        peer.IsToAsk = true;
+        peer.Keys = MostKeys;  // datagrams of keys give it no more time
+        peer.ProgressAt = now;
+    }
+}
+
 void AuthenticationRetries::Gone(const GuidPrefix &peer)
 {
     const auto found = _peers.find(peer);
@@ -76,7 +101,7 @@ void AuthenticationRetries::Gone(const GuidPrefix &peer)
 }
 
 std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::DueOf(const Peer &peer,
-                                                                             Duration answerTime)
+                                                                             Duration answerTime) const
 {
     if (!peer.IsKnown || peer.IsAuthenticated || peer.AnnouncedAt <= peer.ProgressAt)
     {
@@ -84,7 +109,7 @@ std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::DueOf(con
     }
     constexpr int MostDoublings = 8;
     const bool hasBegun = peer.Steps != 0 || peer.IsContradicted;
-    const Duration first = (hasBegun ? 1 : NotBegun) * std::max<Duration>(Stalled, AnswerTimes * answerTime);
+    const Duration first = (hasBegun ? 1 : NotBegun) * std::max(_stalled, AnswerTimes * answerTime);
     return peer.ProgressAt +
            std::min<Duration>(first * (1 << std::min(peer.Attempts, MostDoublings)), Longest);
 }
@@ -94,12 +119,25 @@ std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::Due(Durat
     std::optional<TimePoint> due;
     for (const auto &[prefix, peer] : _peers)
     {
-        if (const auto of = DueOf(peer, answerTime))
+        if (const auto of = peer.IsToAsk ? peer.ProgressAt : DueOf(peer, answerTime))
         {
             due = due ? std::min(*due, *of) : of;
         }
     }
     return due;
+}
+
+std::vector<GuidPrefix> AuthenticationRetries::TakeToAsk()
+{
+    std::vector<GuidPrefix> found;
+    for (auto &[prefix, peer] : _peers)
+    {
+        if (std::exchange(peer.IsToAsk, false) && peer.IsKnown)
+        {
+            found.push_back(prefix);
+        }
+    }
+    return found;
 }
 
 std::vector<GuidPrefix> AuthenticationRetries::Doubtful(TimePoint now, Duration answerTime) const

@@ -19,7 +19,11 @@ namespace Rabit::Rtps
 // nothing has gone on for a while is forgotten, by the own vendor and by a goodbye to the participant itself.
 // Both then begin with the next announcement.
 //
-// - An authenticated participant is never forgotten here. The vendor is asked whether it is one.
+// - An authenticated participant that goes on answering is never forgotten. The vendor is asked whether it is
+//   one.
+// - An authenticated participant that has lost this node begins anew without keys: by a request of a
+//   handshake, or by a goodbye. Anybody can forge these, so the participant is asked for an answer that takes
+//   the keys. If none comes, it is as one that was not authenticated. It is asked once in an attempt.
 // - Until a participant is forgotten, the vendor sees no announcement of it with other content (addresses,
 //   security). Those are the content that its handshake must confirm: see Signs.
 // - Bounds: each attempt ends after a bounded number of steps, whatever a forger sends; attempts come with
@@ -56,6 +60,9 @@ public:
         std::int64_t Number = 0;                 // of the sample
     };
 
+    // `stalled`: in place of Stalled.
+    explicit AuthenticationRetries(Duration stalled = Stalled) : _stalled(stalled) {}
+
     // A participant was announced. Returns false if the vendor should not see that, because it knows the
     // participant with other content.
     bool Announced(const GuidPrefix &peer, const Content &content, TimePoint now);
@@ -67,11 +74,17 @@ public:
     // A message of that step was received from the participant, or sent to it. Of a handshake only the first
     // of each step in an attempt counts, and MostKeys datagrams of keys.
     void Exchanged(const GuidPrefix &peer, Step step, bool isSent, TimePoint now);
+    // A goodbye without keys was received from the participant.
+    void SaidGoodbye(const GuidPrefix &peer, TimePoint now);
     // The vendor does not know the participant any more.
     void Gone(const GuidPrefix &peer);
 
-    // When a participant may have to be forgotten, if answers take that long; none: no time.
+    // When a participant is to be asked, or may have to be forgotten, if answers take that long; none: no
+    // time.
     std::optional<TimePoint> Due(Duration answerTime) const;
+    // The participants to ask now for an answer that only an authenticated one can give. Each is returned
+    // once.
+    std::vector<GuidPrefix> TakeToAsk();
     // The participants to look at now. For each, one of the next three is to be called.
     std::vector<GuidPrefix> Doubtful(TimePoint now, Duration answerTime) const;
     void IsAuthenticated(const GuidPrefix &peer);
@@ -89,6 +102,7 @@ private:
         bool IsKnown = false;  // to the vendor; if not, Known is of the past
         bool IsForgotten = false;
         bool IsAuthenticated = false;
+        bool IsToAsk = false;
         bool IsContradicted = false;  // since it is known
         std::uint32_t Steps = 0;      // of this attempt: a bit for each step, sent or received
         int Keys = 0;                 // datagrams in this attempt, up to MostKeys
@@ -97,9 +111,11 @@ private:
         TimePoint AnnouncedAt{};
     };
 
-    static std::optional<TimePoint> DueOf(const Peer &peer, Duration answerTime);
+    static void BeginsAnew(Peer &peer, TimePoint now);
+    std::optional<TimePoint> DueOf(const Peer &peer, Duration answerTime) const;
     void MakeRoom();
 
+    const Duration _stalled;
     std::map<GuidPrefix, Peer> _peers;
 };
 

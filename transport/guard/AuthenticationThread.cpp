@@ -11,19 +11,17 @@ void AuthenticationThread::Start(Calls calls)
         const std::lock_guard lock(_mutex);
         _calls = std::move(calls);
     }
-    _thread = std::thread([this] { Run(); });
+    DueThread::Start();
 }
 
-void AuthenticationThread::Stop()
+// Requires _mutex. Something may become due after what was noted. The retries are not searched for the time
+// at each datagram: the thread looks once in _lookEvery while anything is due at all.
+void AuthenticationThread::Noted()
 {
+    if (!_lookAt && _retries.Due({}))
     {
-        const std::lock_guard lock(_mutex);
-        _stop = true;
-    }
-    _changed.notify_one();
-    if (_thread.joinable())
-    {
-        _thread.join();
+        _lookAt = Clock::now() + _lookEvery;
+        WakeIfEarlier();
     }
 }
 
@@ -31,11 +29,7 @@ bool AuthenticationThread::Announced(const GuidPrefix &peer, const Authenticatio
 {
     const std::lock_guard lock(_mutex);
     const bool isNew = _retries.Announced(peer, content, Clock::now());
-    // Nothing is due within seconds of now, so the thread need only be woken from a sleep without an end.
-    if (_sleeps && _retries.Due({}))
-    {
-        _changed.notify_one();
-    }
+    Noted();
     return isNew;
 }
 
@@ -54,6 +48,14 @@ void AuthenticationThread::Exchanged(const GuidPrefix &peer, const KeyExchange &
     }
     const std::lock_guard lock(_mutex);
     _retries.Exchanged(peer, what.What, isSent, Clock::now());
+    Noted();
+}
+
+void AuthenticationThread::SaidGoodbye(const GuidPrefix &peer)
+{
+    const std::lock_guard lock(_mutex);
+    _retries.SaidGoodbye(peer, Clock::now());
+    Noted();
 }
 
 void AuthenticationThread::Gone(const GuidPrefix &peer)
@@ -61,7 +63,7 @@ void AuthenticationThread::Gone(const GuidPrefix &peer)
     {
         const std::lock_guard lock(_mutex);
         _retries.Gone(peer);
-        if (_stop || !_calls.Drop)
+        if (IsStopped() || !_calls.Drop)
         {
             return;
         }
@@ -75,40 +77,25 @@ bool AuthenticationThread::WasForgotten(const GuidPrefix &peer) const
     return _retries.WasForgotten(peer);
 }
 
-void AuthenticationThread::Run()
+void AuthenticationThread::Work(std::unique_lock<std::mutex> &lock)
 {
-    std::unique_lock lock(_mutex);
-    while (!_stop)
+    const std::vector<GuidPrefix> toAsk = _retries.TakeToAsk();
+    lock.unlock();
+    const auto answerTime = _calls.AnswerTime();
+    if (_calls.Ask)
     {
-        lock.unlock();
-        const auto answerTime = _calls.AnswerTime();
-        lock.lock();
-        const auto due = _retries.Due(answerTime);
-        if (_stop)
+        std::for_each(toAsk.begin(), toAsk.end(), _calls.Ask);
+    }
+    lock.lock();
+    for (const GuidPrefix &peer : _retries.Doubtful(Clock::now(), answerTime))
+    {
+        if (!IsStopped())
         {
-            return;
-        }
-        if (!due)
-        {
-            _sleeps = true;
-            _changed.wait(lock);
-            _sleeps = false;
-            continue;
-        }
-        if (Clock::now() < *due)
-        {
-            // Something else may become due meanwhile, but not much earlier.
-            _changed.wait_until(lock, std::min(*due, Clock::now() + std::chrono::seconds(1)));
-            continue;
-        }
-        for (const GuidPrefix &peer : _retries.Doubtful(Clock::now(), answerTime))
-        {
-            if (!_stop)
-            {
-                LookAt(peer, lock);
-            }
+            LookAt(peer, lock);
         }
     }
+    const auto due = _retries.Due(answerTime);
+    _lookAt = due ? std::optional(std::min(*due, Clock::now() + _lookEvery)) : std::nullopt;
 }
 
 void AuthenticationThread::LookAt(const GuidPrefix &peer, std::unique_lock<std::mutex> &lock)

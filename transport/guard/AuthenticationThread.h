@@ -1,28 +1,32 @@
 #pragma once
 
-#include <condition_variable>
+#include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <mutex>
-#include <thread>
+#include <optional>
 #include <vector>
 
+#include "common/DueThread.h"
 #include "guard/AuthenticationRetries.h"
 
 namespace Rabit::Rtps
 {
 
 // Runs AuthenticationRetries on a thread of its own, which forgets participants. Thread-safe.
-class AuthenticationThread
+class AuthenticationThread final : public DueThread
 {
 public:
-    using Clock = std::chrono::steady_clock;
-
     // Called on that thread if nothing else is said, and without a lock of this object.
     struct Calls
     {
-        // True if this node and the participant can read each other's discovery.
+        // True if this node and the participant can read each other's discovery, and the participant has
+        // answered since Ask.
         std::function<bool(const GuidPrefix &)> IsAuthenticated;
+        // Asks an authenticated participant for an answer that it can give only with its keys. Null: the
+        // vendor itself forgets an authenticated participant that begins anew.
+        std::function<void(const GuidPrefix &)> Ask;
         // True if a message of the handshake with it waits to be sent for the first time.
         std::function<bool(const GuidPrefix &)> IsWaiting;
         // How long participants take to answer (KeyExchangeOutbox).
@@ -33,14 +37,15 @@ public:
         std::function<void(const GuidPrefix &)> Drop;
     };
 
-    AuthenticationThread() = default;
+    // `stalled`: as AuthenticationRetries.
+    explicit AuthenticationThread(AuthenticationRetries::Duration stalled = AuthenticationRetries::Stalled)
+        : _retries(stalled), _lookEvery(std::min<Clock::duration>(stalled, LongestBetweenLooks))
+    {
+    }
     ~AuthenticationThread() { Stop(); }
-    AuthenticationThread(const AuthenticationThread &) = delete;
-    AuthenticationThread &operator=(const AuthenticationThread &) = delete;
 
+    // No call is made after Stop, except in a Gone that has begun, and no call may stop the thread.
     void Start(Calls calls);
-    // When this returns, no call is in progress, except in Gone, and none will be made. No call may stop it.
-    void Stop();
 
     // Forwarded to AuthenticationRetries. Any thread; no call is made inside, except in Gone.
     bool Announced(const GuidPrefix &peer, const AuthenticationRetries::Content &content);
@@ -48,20 +53,22 @@ public:
     void Received(const KeyExchange &what) { Exchanged(what.From, what, false); }
     void Sent(const KeyExchange &what) { Exchanged(what.To, what, true); }
     void Gone(const GuidPrefix &peer);
+    void SaidGoodbye(const GuidPrefix &peer);
     bool WasForgotten(const GuidPrefix &peer) const;
 
 private:
+    static constexpr std::chrono::seconds LongestBetweenLooks{1};
+
     void Exchanged(const GuidPrefix &peer, const KeyExchange &what, bool isSent);
-    void Run();
+    void Noted();
+    std::optional<Clock::time_point> Due() override { return _lookAt; }
+    void Work(std::unique_lock<std::mutex> &lock) override;
     void LookAt(const GuidPrefix &peer, std::unique_lock<std::mutex> &lock);
 
-    mutable std::mutex _mutex;
-    std::condition_variable _changed;
     AuthenticationRetries _retries;  // guarded by _mutex
-    bool _stop = false;              // guarded by _mutex
-    bool _sleeps = false;            // until it is woken; guarded by _mutex
+    const Clock::duration _lookEvery;
+    std::optional<Clock::time_point> _lookAt;  // empty: nothing can become due; guarded by _mutex
     Calls _calls;
-    std::thread _thread;
 };
 
 }  // namespace Rabit::Rtps

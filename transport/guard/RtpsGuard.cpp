@@ -380,6 +380,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
                 {
                     _observer->Gone(passage.Sender);
                 }
+                if (_authentication != nullptr)
+                {
+                    _authentication->SaidGoodbye(passage.Sender);
+                }
             }
         }
         return Verdict::Pass;

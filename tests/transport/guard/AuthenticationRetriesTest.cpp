@@ -46,6 +46,14 @@ protected:
         }
         return std::chrono::duration_cast<std::chrono::seconds>(Now - begin);
     }
+    // As the vendor tells when it is asked.
+    void Authenticate()
+    {
+        Announce();
+        AnnounceFor(NotBegun + 1s);
+        ASSERT_TRUE(IsDoubtful());
+        Retries.IsAuthenticated(Sender);
+    }
     void BeginAnew()
     {
         Retries.Forget(Sender);
@@ -77,16 +85,101 @@ TEST_F(AuthenticationRetriesTest, AHandshakeThatHasNotBegunGetsMoreTime)
     EXPECT_EQ(LeftAlone(), NotBegun);
 }
 
-TEST_F(AuthenticationRetriesTest, AnAuthenticatedParticipantIsNeverForgotten)
+TEST_F(AuthenticationRetriesTest, AnAuthenticatedParticipantIsNotForgottenForWhatOnlyContradictsIt)
 {
-    Announce();
-    AnnounceFor(NotBegun + 1s);
-    ASSERT_TRUE(IsDoubtful());
-    Retries.IsAuthenticated(Sender);
+    Authenticate();
     EXPECT_FALSE(Announce(2));
     EXPECT_FALSE(Retries.Signs(Sender, {30}));
-    Retries.Exchanged(Sender, Step::Request, false, Now);
+    for (const Step step : {Step::Reply, Step::Final, Step::Keys, Step::Control, Step::Rest})
+    {
+        Retries.Exchanged(Sender, step, false, Now);
+    }
+    Retries.Exchanged(Sender, Step::Request, true, Now);
     AnnounceFor(1h);
+    EXPECT_FALSE(Retries.Due(AnswerTime));
+    EXPECT_TRUE(Retries.TakeToAsk().empty());
+}
+
+TEST_F(AuthenticationRetriesTest, AnAuthenticatedParticipantThatBeginsAnewIsAskedAtOnce)
+{
+    Authenticate();
+    Retries.Exchanged(Sender, Step::Request, false, Now);
+    EXPECT_EQ(Retries.Due(AnswerTime), Now);
+    EXPECT_EQ(Retries.TakeToAsk(), std::vector{Sender});
+    EXPECT_TRUE(Retries.TakeToAsk().empty());
+}
+
+TEST_F(AuthenticationRetriesTest, ARequestForAHandshakeAndAGoodbyeAreBeginningsToo)
+{
+    Authenticate();
+    Retries.Exchanged(Sender, Step::Ask, false, Now);
+    EXPECT_EQ(Retries.TakeToAsk(), std::vector{Sender});
+    Retries.IsAuthenticated(Sender);
+    Retries.SaidGoodbye(Sender, Now);
+    EXPECT_EQ(Retries.TakeToAsk(), std::vector{Sender});
+}
+
+TEST_F(AuthenticationRetriesTest, AnAuthenticatedParticipantThatDoesNotAnswerIsForgotten)
+{
+    Authenticate();
+    Retries.Exchanged(Sender, Step::Request, false, Now);
+    EXPECT_EQ(LeftAlone(), Stalled);
+}
+
+TEST_F(AuthenticationRetriesTest, ForgedBeginningsDoNotAskAnAuthenticatedParticipantMoreOften)
+{
+    Authenticate();
+    int asked = 0;
+    for (const auto end = Now + 10 * Stalled; Now < end; Now += 1s)
+    {
+        Announce();
+        Retries.Exchanged(Sender, Step::Request, false, Now);
+        Retries.SaidGoodbye(Sender, Now);
+        asked += Retries.TakeToAsk().empty() ? 0 : 1;
+        if (IsDoubtful())
+        {
+            Retries.IsAuthenticated(Sender);  // it has answered
+        }
+    }
+    EXPECT_LE(asked, 10);
+}
+
+TEST_F(AuthenticationRetriesTest, ForgedStepsAndKeysGiveAParticipantThatDoesNotAnswerNoMoreTime)
+{
+    Announce();
+    Retries.Exchanged(Sender, Step::Request, false, Now);
+    Retries.Exchanged(Sender, Step::Final, false, Now);
+    Retries.Exchanged(Sender, Step::Keys, false, Now);
+    LeftAlone();
+    Retries.IsAuthenticated(Sender);
+    Retries.Exchanged(Sender, Step::Request, false, Now);
+    const auto begin = Now;
+    while (!IsDoubtful() && Now - begin < 1h)
+    {
+        Now += 1s;
+        Announce();
+        Retries.Exchanged(Sender, Step::Request, false, Now);
+        Retries.Exchanged(Sender, Step::Final, false, Now);
+        Retries.Exchanged(Sender, Step::Keys, false, Now);
+    }
+    EXPECT_EQ(Now - begin, Stalled);
+}
+
+TEST_F(AuthenticationRetriesTest, AParticipantThatIsNotAuthenticatedIsNotAsked)
+{
+    Announce();
+    Retries.Exchanged(Sender, Step::Request, false, Now);
+    Retries.SaidGoodbye(Sender, Now);
+    Retries.SaidGoodbye(Other, Now);
+    EXPECT_TRUE(Retries.TakeToAsk().empty());
+}
+
+TEST_F(AuthenticationRetriesTest, AParticipantThatIsGoneIsNotAsked)
+{
+    Authenticate();
+    Retries.SaidGoodbye(Sender, Now);
+    Retries.Gone(Sender);
+    EXPECT_TRUE(Retries.TakeToAsk().empty());
     EXPECT_FALSE(Retries.Due(AnswerTime));
 }
 

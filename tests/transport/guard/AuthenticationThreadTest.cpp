@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <thread>
+
 #include "guard/Gate.h"
 #include "guard/RtpsBytes.h"
 
@@ -72,10 +77,79 @@ TEST_F(AuthenticationTest, TheVendorSeesNoHandshakeThatSignsOtherAddresses)
     EXPECT_FALSE(Passes(HandshakeMessage(7411)));
 }
 
+// A thread whose attempts are short, and a participant that announces itself.
+class AuthenticationCallsTest : public testing::Test
+{
+protected:
+    AuthenticationCallsTest()
+    {
+        Thread.Start({.IsAuthenticated = [this](const auto &) { return Authenticated.load(); },
+                      .Ask = [this](const auto &peer) { Asked = peer == Sender; },
+                      .IsWaiting = [this](const auto &) { return ++Looks < WaitingLooks; },
+                      .AnswerTime = [] { return AuthenticationThread::Clock::duration(0); },
+                      .Forget =
+                          [this](const auto &peer, auto number)
+                      {
+                          Thread.Gone(peer);
+                          ForgottenWith = peer == Sender ? number : -1;
+                      },
+                      .Drop = [this](const auto &peer) { Dropped = peer == Sender; }});
+    }
+    ~AuthenticationCallsTest() override { Thread.Stop(); }
+    template <typename Condition>
+    void AnnounceUntil(const Condition &holds)
+    {
+        while (!holds())
+        {
+            Thread.Announced(Sender, {.Number = LastNumber});
+            std::this_thread::yield();
+        }
+    }
+    bool IsForgotten() const { return ForgottenWith != 0; }
+
+    static constexpr std::int64_t LastNumber = 7;
+    std::atomic<bool> Authenticated{false};
+    std::atomic<bool> Asked{false};
+    std::atomic<bool> Dropped{false};
+    std::atomic<std::int64_t> ForgottenWith{0};
+    std::atomic<int> Looks{0};
+    std::atomic<int> WaitingLooks{0};
+    AuthenticationThread Thread{std::chrono::milliseconds(1)};
+};
+
+TEST_F(AuthenticationCallsTest, AParticipantThatIsNotAuthenticatedIsForgotten)
+{
+    AnnounceUntil([this] { return IsForgotten(); });
+    EXPECT_EQ(ForgottenWith, LastNumber + 1);
+    EXPECT_TRUE(Dropped);
+}
+
+TEST_F(AuthenticationCallsTest, AParticipantWhoseMessageWaitsIsNotForgottenYet)
+{
+    WaitingLooks = 3;
+    AnnounceUntil([this] { return IsForgotten(); });
+    EXPECT_GE(Looks, 3);
+}
+
+TEST_F(AuthenticationCallsTest, AnAuthenticatedParticipantThatBeginsAnewAndDoesNotAnswerIsForgotten)
+{
+    Authenticated = true;
+    AnnounceUntil(
+        [this]
+        {
+            Thread.SaidGoodbye(Sender);
+            return Asked.load();
+        });
+    EXPECT_FALSE(IsForgotten());
+    Authenticated = false;
+    AnnounceUntil([this] { return IsForgotten(); });
+}
+
 TEST(AuthenticationThreadTest, AStoppedThreadMakesNoCall)
 {
     AuthenticationThread thread;
     thread.Start({.IsAuthenticated = [](const auto &) { return false; },
+                  .Ask = [](const auto &) { ADD_FAILURE(); },
                   .IsWaiting = [](const auto &) { return false; },
                   .AnswerTime = [] { return AuthenticationThread::Clock::duration(0); },
                   .Forget = [](const auto &, auto) { ADD_FAILURE(); },

@@ -61,17 +61,24 @@ bool IsGroup(const DirectAnnouncements::Address &address)
 
 }  // namespace
 
+ddsi_guid_t VendorDomain::OwnParticipant()
+{
+    const std::lock_guard lock(_cardMutex);
+    return ParticipantOf(_announcement.empty() ? Rtps::GuidPrefix{} : Rtps::SenderOf(_announcement));
+}
+
 bool VendorDomain::HasKeysOf(const Rtps::GuidPrefix &participant)
 {
-    std::unique_lock lock(_cardMutex);
-    if (_announcement.empty())
-    {
-        return false;
-    }
-    const ddsi_guid_t own = ParticipantOf(Rtps::SenderOf(_announcement));
-    lock.unlock();
+    const ddsi_guid_t own = OwnParticipant();
     const ddsi_guid_t peer = ParticipantOf(participant);
     return RabitCycloneHasKeysOf(_watch, &own, &peer);
+}
+
+void VendorDomain::Ask(const Rtps::GuidPrefix &participant)
+{
+    const ddsi_guid_t own = OwnParticipant();
+    const ddsi_guid_t peer = ParticipantOf(participant);
+    RabitCycloneAsk(_watch, &own, &peer);
 }
 
 void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
@@ -351,7 +358,10 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     {
         if (const auto exchange = ReadKeyExchange({datagram, admitted}))
         {
-            domain._authentication.Received(*exchange);
+            if (domain._keys.IsForUs(*exchange))
+            {
+                domain._authentication.Received(*exchange);
+            }
             if (!domain._keys.Received(*exchange))
             {
                 return 0;
@@ -460,6 +470,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     if (_secured && _watch != nullptr)
     {
         _authentication.Start({.IsAuthenticated = [this](const auto &peer) { return HasKeysOf(peer); },
+                               .Ask = [this](const auto &peer) { Ask(peer); },
                                .IsWaiting = [this](const auto &peer) { return _keys.IsWaiting(peer); },
                                .AnswerTime = [this] { return _keys.AnswerTime(); },
                                .Forget = [this](const auto &peer, auto /*number*/) { Forget(peer); },

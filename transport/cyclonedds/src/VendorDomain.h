@@ -76,8 +76,11 @@ private:
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);
-    // True if this node's participant and that one have each other's keys.
+    // The domain's participant; zero before it has announced itself.
+    ddsi_guid_t OwnParticipant();
+    // RabitCycloneHasKeysOf, RabitCycloneAsk
     bool HasKeysOf(const Rtps::GuidPrefix &participant);
+    void Ask(const Rtps::GuidPrefix &participant);
     // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
     void Forget(const Rtps::GuidPrefix &participant);
     // Returns the size of the part of a datagram that the vendor may see.

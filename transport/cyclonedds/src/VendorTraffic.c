@@ -265,21 +265,28 @@ static bool HasPrefixOf(const ddsi_guid_t *one, const ddsi_guid_t *other)
     return memcmp(&one->prefix, &other->prefix, sizeof one->prefix) == 0;
 }
 
-/* The reader of the participant that matches the writer, if any. */
+/* The reader of a participant that the writer has matched; NULL: none. Requires the writer's lock. */
+static struct ddsi_wr_prd_match *FindMatch(const struct ddsi_writer *writer, const ddsi_guid_t *participant)
+{
+    ddsrt_avl_iter_t at;
+    struct ddsi_wr_prd_match *match = ddsrt_avl_iter_first(&ddsi_wr_readers_treedef, &writer->readers, &at);
+    while (match != NULL && !HasPrefixOf(&match->prd_guid, participant))
+    {
+        match = ddsrt_avl_iter_next(&at);
+    }
+    return match;
+}
+
 static bool FindReader(struct ddsi_writer *writer, const ddsi_guid_t *participant, ddsi_guid_t *reader)
 {
-    bool found = false;
     ddsrt_mutex_lock(&writer->e.lock);
-    ddsrt_avl_iter_t at;
-    for (const struct ddsi_wr_prd_match *match =
-             ddsrt_avl_iter_first(&ddsi_wr_readers_treedef, &writer->readers, &at);
-         match != NULL && !found; match = ddsrt_avl_iter_next(&at))
+    const struct ddsi_wr_prd_match *const match = FindMatch(writer, participant);
+    if (match != NULL)
     {
-        found = HasPrefixOf(&match->prd_guid, participant);
         *reader = match->prd_guid;
     }
     ddsrt_mutex_unlock(&writer->e.lock);
-    return found;
+    return match != NULL;
 }
 
 /* Uses the reader's address, not the one that its participant announced: the vendor keeps only a
@@ -521,18 +528,52 @@ void RabitCycloneAnnounce(const void *watch, const ddsi_guid_t *participant)
     thread_state_asleep(lookup_thread_state());
 }
 
-/* The vendor matches the writer of protected discovery when it has the keys of both. */
+/* The own participant's writer of protected discovery. The vendor matches it with another participant's
+ * reader when it has the keys of both, and accepts that reader's acknowledgements only with them. Between a
+ * thread's awake and asleep. */
+static struct ddsi_writer *ProtectedWriter(const struct ddsi_domaingv *domain, const ddsi_guid_t *own)
+{
+    ddsi_guid_t guid = *own;
+    guid.entityid.u = NN_ENTITYID_SEDP_BUILTIN_PUBLICATIONS_SECURE_WRITER;
+    return entidx_lookup_writer_guid(domain->entity_index, &guid);
+}
+
 bool RabitCycloneHasKeysOf(const void *watch, const ddsi_guid_t *own, const ddsi_guid_t *peer)
 {
     struct ddsi_domaingv *domain = ((const struct Watch *)watch)->domain;
-    ddsi_guid_t guid = *own;
-    ddsi_guid_t reader;
-    guid.entityid.u = NN_ENTITYID_SEDP_BUILTIN_PUBLICATIONS_SECURE_WRITER;
+    bool has = false;
     thread_state_awake(lookup_thread_state(), domain);
-    struct ddsi_writer *known = entidx_lookup_writer_guid(domain->entity_index, &guid);
-    const bool has = known != NULL && FindReader(known, peer, &reader);
+    struct ddsi_writer *known = ProtectedWriter(domain, own);
+    if (known != NULL)
+    {
+        ddsrt_mutex_lock(&known->e.lock);
+        const struct ddsi_wr_prd_match *const match = FindMatch(known, peer);
+        /* A writer that has written nothing sends no heartbeat. */
+        has = match != NULL && (match->has_replied_to_hb || known->seq == 0);
+        ddsrt_mutex_unlock(&known->e.lock);
+    }
     thread_state_asleep(lookup_thread_state());
     return has;
+}
+
+void RabitCycloneAsk(const void *watch, const ddsi_guid_t *own, const ddsi_guid_t *peer)
+{
+    struct ddsi_domaingv *domain = ((const struct Watch *)watch)->domain;
+    thread_state_awake(lookup_thread_state(), domain);
+    struct ddsi_writer *known = ProtectedWriter(domain, own);
+    if (known != NULL)
+    {
+        ddsrt_mutex_lock(&known->e.lock);
+        struct ddsi_wr_prd_match *const match = FindMatch(known, peer);
+        if (match != NULL && known->heartbeat_xevent != NULL)
+        {
+            match->has_replied_to_hb = 0;
+            ddsrt_avl_augment_update(&ddsi_wr_readers_treedef, match);
+            resched_xevent_if_earlier(known->heartbeat_xevent, ddsrt_time_monotonic());
+        }
+        ddsrt_mutex_unlock(&known->e.lock);
+    }
+    thread_state_asleep(lookup_thread_state());
 }
 
 void RabitCycloneForget(const void *watch, const ddsi_guid_t *peer)

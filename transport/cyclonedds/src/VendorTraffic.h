@@ -80,8 +80,13 @@ extern "C"
        peer that knows us does. */
     bool RabitCycloneIsUnheard(const void *watch, const ddsi_guid_t *participant);
 
-    /* True if own and other participant have each other's keys. */
+    /* True if own and other participant have each other's keys, as far as the other one has shown: it has
+       acknowledged the own one's protected discovery since they met, and since RabitCycloneAsk. */
     bool RabitCycloneHasKeysOf(const void *watch, const ddsi_guid_t *own, const ddsi_guid_t *peer);
+    /* Asks the other participant to acknowledge the own one's protected discovery. The vendor repeats the
+       heartbeat until it does, and takes no acknowledgement without its keys. Not with the vendor's locks
+       held. */
+    void RabitCycloneAsk(const void *watch, const ddsi_guid_t *own, const ddsi_guid_t *peer);
     /* Makes the vendor forget another participant, as if its lease had run out. Not with the vendor's locks
        held. */
     void RabitCycloneForget(const void *watch, const ddsi_guid_t *peer);

@@ -108,6 +108,7 @@ public:
                                        const auto own = OwnAnnouncement();
                                        return !own.empty() && KeyAddressees::HasKeysOf(SenderOf(own), peer);
                                    },
+                                   .Ask = nullptr,
                                    .IsWaiting = [this](const auto &peer) { return Keys()->IsWaiting(peer); },
                                    .AnswerTime = [this] { return Keys()->AnswerTime(); },
                                    .Forget = [this](const auto &peer, auto number) { Forget(peer, number); },
