@@ -32,16 +32,15 @@ bool AuthenticationRetries::Announced(const GuidPrefix &peer, const Content &con
     return true;
 }
 
-bool AuthenticationRetries::Signs(const GuidPrefix &peer, const std::vector<std::uint64_t> &addresses)
+bool AuthenticationRetries::Signs(const GuidPrefix &peer, const SignedContent &content)
 {
     const auto found = _peers.find(peer);
-    if (addresses.empty() || found == _peers.end() || !found->second.IsKnown)
+    if (content.empty() || found == _peers.end() || !found->second.IsKnown)
     {
         return true;
     }
     Peer &known = found->second;
-    const bool agrees = std::includes(addresses.begin(), addresses.end(), known.Known.Addresses.begin(),
-                                      known.Known.Addresses.end());
+    const bool agrees = content == known.Known.Signed;
     known.IsContradicted = known.IsContradicted || !agrees;
     return agrees;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/KeyExchange.h"
+#include "guard/DiscoveryCheck.h"
 #include "guard/RtpsMessage.h"
 
 namespace Rabit::Rtps
@@ -55,9 +56,9 @@ public:
     // Content of a participant's announcement.
     struct Content
     {
-        std::uint64_t Digest = 0;                // of addresses and security
-        std::vector<std::uint64_t> Addresses{};  // sorted; each an address and its use
-        std::int64_t Number = 0;                 // of the sample
+        std::uint64_t Digest = 0;  // of addresses and security
+        SignedContent Signed{};
+        std::int64_t Number = 0;  // of the sample
     };
 
     // `stalled`: in place of Stalled.
@@ -66,11 +67,10 @@ public:
     // A participant was announced. Returns false if the vendor should not see that, because it knows the
     // participant with other content.
     bool Announced(const GuidPrefix &peer, const Content &content, TimePoint now);
-    // A message of a handshake came that signs these addresses of its sender; empty: none. Returns false if
-    // the vendor should not see it, because it knows the sender by an address that is not among them. Only a
-    // participant whose handshake confirms its addresses is authenticated, so that a forged address does not
-    // last. `addresses` must be sorted.
-    bool Signs(const GuidPrefix &peer, const std::vector<std::uint64_t> &addresses);
+    // A message of a handshake came that signs this content of its sender; empty: none. Returns false if the
+    // vendor should not see it, because it knows the sender with other content. Only a participant whose
+    // handshake confirms its announcement is authenticated, so that a forged announcement does not last.
+    bool Signs(const GuidPrefix &peer, const SignedContent &content);
     // A message of that step was received from the participant, or sent to it. Of a handshake only the first
     // of each step in an attempt counts, and MostKeys datagrams of keys.
     void Exchanged(const GuidPrefix &peer, Step step, bool isSent, TimePoint now);

@@ -33,10 +33,10 @@ bool AuthenticationThread::Announced(const GuidPrefix &peer, const Authenticatio
     return isNew;
 }
 
-bool AuthenticationThread::Signs(const GuidPrefix &peer, const std::vector<std::uint64_t> &addresses)
+bool AuthenticationThread::Signs(const GuidPrefix &peer, const SignedContent &content)
 {
     const std::lock_guard lock(_mutex);
-    return _retries.Signs(peer, addresses);
+    return _retries.Signs(peer, content);
 }
 
 void AuthenticationThread::Exchanged(const GuidPrefix &peer, const KeyExchange &what, bool isSent)

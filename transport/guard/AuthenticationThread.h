@@ -49,7 +49,7 @@ public:
 
     // Forwarded to AuthenticationRetries. Any thread; no call is made inside, except in Gone.
     bool Announced(const GuidPrefix &peer, const AuthenticationRetries::Content &content);
-    bool Signs(const GuidPrefix &peer, const std::vector<std::uint64_t> &addresses);
+    bool Signs(const GuidPrefix &peer, const SignedContent &content);
     void Received(const KeyExchange &what) { Exchanged(what.From, what, false); }
     void Sent(const KeyExchange &what) { Exchanged(what.To, what, true); }
     void Gone(const GuidPrefix &peer);

@@ -37,7 +37,7 @@ struct Found
     Fnv1a Digest;
     Fnv1a DigestWithoutLease;
     std::vector<HostAddress> Hosts;
-    std::vector<std::uint64_t> Addresses;
+    SignedContent Signed;
     bool ListensToGroup = false;
     bool BestEffort = false;
     bool HasCard = false;
@@ -171,20 +171,6 @@ std::optional<HostAddress> HostOf(RtpsReader locator)
     return host;
 }
 
-// A UDP address with its use, as in SignedAddresses; empty for other locators.
-std::optional<std::uint64_t> AddressOf(std::uint16_t use, RtpsReader locator)
-{
-    const auto host = HostOf(locator);
-    if (!host)
-    {
-        return std::nullopt;
-    }
-    locator.U32();  // kind
-    const std::uint64_t port = locator.U32() & 0xffff;
-    const std::uint64_t address = RtpsReader(*host, false).U32();
-    return std::uint64_t{use} << 48 | address << 16 | port;
-}
-
 // True for the addresses at which a participant itself can be reached.
 bool IsUnicast(std::uint16_t id)
 {
@@ -303,10 +289,6 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
             if (IsUnicast(id))
             {
                 found.AddHost(HostOf(value));
-                if (const auto address = AddressOf(id, value))
-                {
-                    found.Addresses.push_back(*address);
-                }
             }
             found.ListensToGroup = found.ListensToGroup || id == DefaultMulticastLocator;
             return true;
@@ -357,6 +339,38 @@ void BoundLease(std::span<std::uint8_t> value, bool littleEndian)
     Write(value.first(4), longest, littleEndian);
 }
 
+// True for the addresses at which a participant, or a group, can be reached.
+bool IsAddress(std::uint16_t id)
+{
+    return IsUnicast(id) || id == UnicastLocator || id == MulticastLocator || id == DefaultMulticastLocator ||
+           id == MetatrafficMulticastLocator;
+}
+
+bool IsSigned(std::uint16_t id)
+{
+    return IsAddress(id) || id == LeaseDuration || id == BuiltinEndpointSet || id == ParticipantSecurityInfo;
+}
+
+SignedParameter SignedForm(std::uint16_t id, RtpsReader value)
+{
+    SignedParameter form{static_cast<std::uint8_t>(id >> 8), static_cast<std::uint8_t>(id & 0xff)};
+    std::span<std::uint8_t> rest = std::span(form).subspan(2);
+    // In a locator, two numbers come before the 16 bytes of the address. The others hold numbers alone.
+    constexpr std::size_t AddressSize = 16;
+    const std::size_t bytes = IsAddress(id) ? AddressSize : 0;
+    for (; value.Left() >= bytes + 4 && rest.size() >= bytes + 4; rest = rest.subspan(4))
+    {
+        Write(rest.first(4), value.U32(), false);
+    }
+    const auto address = value.Bytes(std::min(bytes, value.Left()));
+    std::copy(address.begin(), address.end(), rest.begin());
+    if (id == LeaseDuration)
+    {
+        BoundLease(std::span(form).subspan(2, 8), false);
+    }
+    return form;
+}
+
 // A list of parameters is an announcement, or the key of something that ended.
 enum class Content
 {
@@ -395,14 +409,14 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
         if (!parameter)
         {
             const bool hasCard = writer == ParticipantWriter && found.HasCard;
-            std::sort(found.Addresses.begin(), found.Addresses.end());
+            std::sort(found.Signed.begin(), found.Signed.end());
             return IsComplete(writer, found, content)
                        ? std::optional(
                              Announcement{.Subject = found.Subject,
                                           .Digest = (hasCard ? found.DigestWithoutLease : found.Digest).Sum(),
                                           .IsBestEffort = found.BestEffort,
                                           .Hosts = std::move(found.Hosts),
-                                          .Addresses = std::move(found.Addresses),
+                                          .Signed = std::move(found.Signed),
                                           .ListensToGroup = found.ListensToGroup,
                                           .HasCard = hasCard})
                        : std::nullopt;
@@ -420,6 +434,10 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
         if (wanted && writer != ParticipantWriter)
         {
             found.Digested(id, value);
+        }
+        if (secured && writer == ParticipantWriter && IsSigned(id))
+        {
+            found.Signed.push_back(SignedForm(id, RtpsReader(value, littleEndian)));
         }
         if (!wanted && secured)
         {
@@ -464,20 +482,17 @@ std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &se
     return CheckParameters(writer, sender, payload, secured, Content::Announcement, lease);
 }
 
-std::vector<std::uint64_t> SignedAddresses(std::span<const std::uint8_t> handshake)
+SignedContent SignedContentOf(std::span<const std::uint8_t> handshake)
 {
     // 9.3.2.5.1: a big-endian list of parameters without an encapsulation.
     RtpsReader list(BinaryPropertyOf(handshake, "c.pdata"), false);
-    std::vector<std::uint64_t> found;
-    while (const auto parameter = TakeParameter(list))
+    SignedContent found;
+    for (auto parameter = TakeParameter(list); parameter && found.size() < MostParameters;
+         parameter = TakeParameter(list))
     {
-        const RtpsReader value(parameter->Value, false);
-        if (IsUnicast(parameter->Id) && IsLocator(value) && found.size() < MostLocators)
+        if (IsSigned(parameter->Id))
         {
-            if (const auto address = AddressOf(parameter->Id, value))
-            {
-                found.push_back(*address);
-            }
+            found.push_back(SignedForm(parameter->Id, RtpsReader(parameter->Value, false)));
         }
     }
     std::sort(found.begin(), found.end());

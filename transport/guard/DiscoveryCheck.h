@@ -1,6 +1,7 @@
 // Checks the announcements of participants and endpoints before the vendor reads them.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,13 @@
 
 namespace Rabit::Rtps
 {
+
+// A parameter of a participant's announcement, in one form for both byte orders: its id and its value,
+// big-endian, filled up with zeros.
+using SignedParameter = std::array<std::uint8_t, 2 + 24>;
+// The parameters in which a participant's announcement and its handshake must agree: all addresses, also of
+// multicast, the lease (at most LongestLease), the builtin endpoints, and the protection. Sorted.
+using SignedContent = std::vector<SignedParameter>;
 
 // Content of a sound announcement.
 struct Announcement
@@ -24,8 +32,8 @@ struct Announcement
     bool IsBestEffort = false;
     // Participant: the addresses at which it says it can be reached.
     std::vector<HostAddress> Hosts{};
-    // Participant: the same, each with its port and its use, as in SignedAddresses.
-    std::vector<std::uint64_t> Addresses{};
+    // Participant, if `secured`.
+    SignedContent Signed{};
     // Participant: it listens to a multicast group for samples (PID_DEFAULT_MULTICAST_LOCATOR).
     bool ListensToGroup = false;
     // Participant: it exchanges cards (rtps/Meeting.h). Its digest then omits the lease, which the reader of
@@ -53,10 +61,9 @@ std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &se
                                            std::span<std::uint8_t> payload, bool secured,
                                            Lease lease = Lease::Bounded);
 
-// The addresses that a sound message of a handshake signs (OMG DDS Security 1.1, 9.3.2.5: `c.pdata` holds the
-// sender's announcement): for each UDP address its use, IPv4 host and port, in one number. Sorted; empty if
-// the message holds none.
-std::vector<std::uint64_t> SignedAddresses(std::span<const std::uint8_t> handshake);
+// The content that a sound message of a handshake signs (OMG DDS Security 1.1, 9.3.2.5: `c.pdata` holds the
+// sender's announcement). Empty if the message holds none.
+SignedContent SignedContentOf(std::span<const std::uint8_t> handshake);
 
 // Checks the payload of a sample that ends something: a key alone. Returns true if it is whole and names the
 // sender itself or one of its endpoints. Fast DDS takes a payload of up to 16 bytes for a key hash, and

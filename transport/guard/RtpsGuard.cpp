@@ -356,7 +356,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
             return Verdict::Drop;
         }
         return _authentication == nullptr ||
-                       _authentication->Signs(passage.Sender, SignedAddresses(delivery.Payload))
+                       _authentication->Signs(passage.Sender, SignedContentOf(delivery.Payload))
                    ? Verdict::Pass
                    : Verdict::Refuse;
     }
@@ -430,7 +430,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
         (_authentication != nullptr && isFromNetwork &&
          !_authentication->Announced(
              passage.Sender,
-             {.Digest = announcement.Digest, .Addresses = announcement.Addresses, .Number = number})))
+             {.Digest = announcement.Digest, .Signed = announcement.Signed, .Number = number})))
     {
         return Verdict::Refuse;
     }

@@ -24,7 +24,7 @@ protected:
 
     bool Announce(std::uint64_t digest = 1, const GuidPrefix &peer = Sender)
     {
-        return Retries.Announced(peer, {.Digest = digest, .Addresses = {10, 20}, .Number = 7}, Now);
+        return Retries.Announced(peer, {.Digest = digest, .Signed = {{10}, {20}}, .Number = 7}, Now);
     }
     // Announces the participant each second for that long.
     void AnnounceFor(std::chrono::seconds time)
@@ -89,7 +89,7 @@ TEST_F(AuthenticationRetriesTest, AnAuthenticatedParticipantIsNotForgottenForWha
 {
     Authenticate();
     EXPECT_FALSE(Announce(2));
-    EXPECT_FALSE(Retries.Signs(Sender, {30}));
+    EXPECT_FALSE(Retries.Signs(Sender, {{30}}));
     for (const Step step : {Step::Reply, Step::Final, Step::Keys, Step::Control, Step::Rest})
     {
         Retries.Exchanged(Sender, step, false, Now);
@@ -289,14 +289,15 @@ TEST_F(AuthenticationRetriesTest, AnAnnouncementWithOtherContentShortensTheTime)
     EXPECT_EQ(LeftAlone(), Stalled);
 }
 
-TEST_F(AuthenticationRetriesTest, AHandshakeMustSignTheAddressesThatWereAnnounced)
+TEST_F(AuthenticationRetriesTest, AHandshakeMustSignTheContentThatWasAnnounced)
 {
     Announce();
-    EXPECT_TRUE(Retries.Signs(Sender, {10, 20}));
-    EXPECT_TRUE(Retries.Signs(Sender, {5, 10, 20}));
+    EXPECT_TRUE(Retries.Signs(Sender, {{10}, {20}}));
     EXPECT_TRUE(Retries.Signs(Sender, {}));
-    EXPECT_FALSE(Retries.Signs(Sender, {10, 30}));
-    EXPECT_TRUE(Retries.Signs(Other, {30}));
+    EXPECT_FALSE(Retries.Signs(Sender, {{5}, {10}, {20}}));
+    EXPECT_FALSE(Retries.Signs(Sender, {{10}}));
+    EXPECT_FALSE(Retries.Signs(Sender, {{10}, {30}}));
+    EXPECT_TRUE(Retries.Signs(Other, {{30}}));
     EXPECT_EQ(LeftAlone(), Stalled);
 }
 

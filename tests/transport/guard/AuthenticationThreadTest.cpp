@@ -7,6 +7,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <initializer_list>
 #include <thread>
 
 #include "guard/Gate.h"
@@ -28,11 +29,20 @@ Bytes BigEndian32(std::uint32_t value)
             static_cast<std::uint8_t>(value >> 8), static_cast<std::uint8_t>(value)};
 }
 
-// A message of a handshake whose `c.pdata` has this port where ParticipantData has its own.
-Bytes HandshakeMessage(std::uint32_t port)
+Bytes SignedLease(std::uint32_t seconds)
 {
-    const Bytes data =
-        Join({{0, 0x32, 0, 24}, BigEndian32(1), BigEndian32(port), Bytes(12), {127, 0, 0, 1}, {0, 1, 0, 0}});
+    return Join({{0, 0x02, 0, 8}, BigEndian32(seconds), BigEndian32(0)});
+}
+
+Bytes SignedAddress(std::uint8_t use, std::uint32_t port)
+{
+    return Join({{0, use, 0, 24}, BigEndian32(1), BigEndian32(port), Bytes(12), {127, 0, 0, 1}});
+}
+
+// A message of a handshake whose `c.pdata` holds these parameters.
+Bytes HandshakeMessage(std::initializer_list<Bytes> parameters)
+{
+    const Bytes data = Join({Join(parameters), {0, 1, 0, 0}});
     const Bytes token = Join({Text("DDS:Auth:PKI-DH:1.0+Req"), U32(0), U32(1), Text("c.pdata"),
                               U32(static_cast<std::uint32_t>(data.size())), data});
     return Message(
@@ -70,11 +80,20 @@ TEST_F(AuthenticationTest, TheVendorSeesOneContentOfAParticipantUntilItIsGone)
     EXPECT_TRUE(Passes(ParticipantMessage(Sender, 7411)));
 }
 
-TEST_F(AuthenticationTest, TheVendorSeesNoHandshakeThatSignsOtherAddresses)
+TEST_F(AuthenticationTest, TheVendorSeesNoHandshakeThatSignsAnythingElseThanWasAnnounced)
 {
+    constexpr std::uint8_t unicast = 0x32;
+    constexpr std::uint8_t multicast = 0x33;
     EXPECT_TRUE(Passes(ParticipantMessage(Sender, 7410)));
-    EXPECT_TRUE(Passes(HandshakeMessage(7410)));
-    EXPECT_FALSE(Passes(HandshakeMessage(7411)));
+    EXPECT_TRUE(Passes(HandshakeMessage({SignedLease(3), SignedAddress(unicast, 7410)})));
+    EXPECT_TRUE(Passes(HandshakeMessage({SignedAddress(unicast, 7410), SignedLease(3)})));
+    EXPECT_FALSE(Passes(HandshakeMessage({SignedLease(3), SignedAddress(unicast, 7411)})));
+    EXPECT_FALSE(Passes(HandshakeMessage({SignedLease(4), SignedAddress(unicast, 7410)})));
+    EXPECT_FALSE(Passes(HandshakeMessage({SignedLease(3)})));
+    EXPECT_FALSE(Passes(
+        HandshakeMessage({SignedLease(3), SignedAddress(unicast, 7410), SignedAddress(unicast, 7412)})));
+    EXPECT_FALSE(Passes(
+        HandshakeMessage({SignedLease(3), SignedAddress(unicast, 7410), SignedAddress(multicast, 7400)})));
 }
 
 // A thread whose attempts are short, and a participant that announces itself.

@@ -30,6 +30,7 @@ STEPS = (b"DDS:Auth:PKI-DH:1.0+Req", b"DDS:Auth:PKI-DH:1.0+Reply", b"DDS:Auth:PK
 IDENTITY_TOKEN, PERMISSIONS_TOKEN = 0x1001, 0x1002
 SECURITY = (0x1001, 0x1002, 0x1005, 0x1006)
 UNICAST_LOCATORS = (0x31, 0x32)
+LEASE = 2
 NOBODYS_PORT = 9
 DATA_FRAGMENT = 0x16
 # A minute's: twice as long as an attempt to meet takes (AuthenticationRetries::Stalled).
@@ -142,6 +143,27 @@ def moved(datagram, number, at, _, order):
     return number in UNICAST_LOCATORS
 
 
+def with_fewer_addresses(datagram, number, at, _, order):
+    if number == UNICAST_LOCATORS[0]:
+        struct.pack_into(order + "H", datagram, at, 0)
+    return number == UNICAST_LOCATORS[0]
+
+
+def with_another_lease(datagram, number, at, _, order):
+    if number == LEASE:
+        struct.pack_into(order + "I", datagram, at + 4, LEASE_S - 1)
+    return number == LEASE
+
+
+class Unconfirmed(Case):
+    """The same. What was announced falsely could be used, and must not last all the same: both sides begin anew."""
+
+    def meet(self, nodes):
+        super().meet(nodes)
+        assert any("begin anew" in text for process in nodes.values() for _, text in process.lines), \
+            "what was announced falsely was believed"
+
+
 class Healthy(Case):
     """Two members that have met, between which somebody forges announcements and messages of handshakes."""
 
@@ -191,14 +213,17 @@ CASES = [("request: permissions", handshake(0, b"c.perm")), ("request: challenge
          ("identity token", announcement(token(IDENTITY_TOKEN))),
          ("permissions token", announcement(token(PERMISSIONS_TOKEN))),
          ("no security", announcement(without_security)), ("another address", announcement(moved))]
+UNCONFIRMED = [("fewer addresses", announcement(with_fewer_addresses)),
+               ("another lease", announcement(with_another_lease))]
 
 
 def main():
     programs, transports = sys.argv[1:3], sys.argv[3:]
     harness.enter_namespace()
     pairs = [(one, other) for one in transports for other in transports]
-    cases = [Case(programs, pair, number, name, spoil)
-             for number, (name, spoil, pair) in enumerate((name, spoil, pair) for name, spoil in CASES for pair in pairs)]
+    spoils = [(Case, *each) for each in CASES] + [(Unconfirmed, *each) for each in UNCONFIRMED]
+    cases = [kind(programs, pair, number, name, spoil) for number, (kind, name, spoil, pair)
+             in enumerate((*each, pair) for each in spoils for pair in pairs)]
     cases += [Healthy(programs, pair, len(cases) + number) for number, pair in enumerate(pairs)]
     try:
         with contextlib.ExitStack() as wires:
