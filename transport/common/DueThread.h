@@ -6,10 +6,13 @@
 #include <optional>
 #include <thread>
 
+#include "common/StartThread.h"
+
 namespace Rabit
 {
 
-// A thread that works whenever something is due.
+// A thread that works whenever something is due. Start and Prepare throw TransportError if the thread cannot
+// be started; the object is then as before.
 class DueThread
 {
 public:
@@ -17,6 +20,14 @@ public:
 
     DueThread(const DueThread &) = delete;
     DueThread &operator=(const DueThread &) = delete;
+    // Starts the thread, which does no work before Start: for an owner whose Start must not fail.
+    void Prepare()
+    {
+        if (!_thread.joinable())
+        {
+            _thread = StartThread([this] { Run(); });
+        }
+    }
     // When this returns, no work is in progress and none will be done. Any number of times; not from inside
     // the work. A derived class calls it in its destructor.
     void Stop()
@@ -38,7 +49,12 @@ protected:
 
     void Start()
     {
-        _thread = std::thread([this] { Run(); });
+        Prepare();
+        {
+            const std::lock_guard lock(_mutex);
+            _started = true;
+        }
+        _changed.notify_one();
     }
     // The functions below require _mutex.
 
@@ -64,6 +80,7 @@ private:
     void Run()
     {
         std::unique_lock lock(_mutex);
+        _changed.wait(lock, [this] { return _started || _stop; });
         while (!_stop)
         {
             _sleepsUntil = Due();
@@ -81,6 +98,7 @@ private:
     std::condition_variable _changed;
     std::optional<Clock::time_point> _sleepsUntil;  // guarded by _mutex, like those below
     bool _sleeps = false;
+    bool _started = false;
     bool _stop = false;
     std::thread _thread;
 };

@@ -9,8 +9,9 @@
 #include <condition_variable>
 #include <map>
 #include <mutex>
-#include <thread>
 #include <utility>
+
+#include "common/StartThread.h"
 
 namespace Rabit
 {
@@ -40,7 +41,7 @@ PeerResolver::PeerResolver(std::vector<std::string> hosts, Lookup lookup)
         return;
     }
     // Detached, because the system's resolver may take half a minute and cannot be interrupted.
-    std::thread([shared = _shared, hosts = std::move(hosts), lookup = std::move(lookup)]
+    StartThread([shared = _shared, hosts = std::move(hosts), lookup = std::move(lookup)]
                 { Run(shared, hosts, lookup); })
         .detach();
     std::unique_lock lock(_shared->Mutex);

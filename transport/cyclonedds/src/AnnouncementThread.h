@@ -26,6 +26,7 @@ public:
     AnnouncementThread(std::chrono::milliseconds answerGap, bool hasCard)
         : _rounds(answerGap, Clock::now(), hasCard)
     {
+        Prepare();
     }
     ~AnnouncementThread() { Stop(); }  // no call is made afterwards
 

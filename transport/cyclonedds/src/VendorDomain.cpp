@@ -407,12 +407,15 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
             { RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size()); });
     }
     _meets = GuardMode(settings) == Rtps::RtpsGuard::Mode::Full;
+    // The threads are made before the vendor calls this object: if one cannot be, nothing is to be undone.
     if (_meets)
     {
+        _meeting.Prepare();
         _guard.SetObserver(_meeting);
     }
     if (_secured)
     {
+        _authentication.Prepare();
         _guard.SetAuthentication(_authentication);
     }
     KeepLargeBlocksOffTheHeap();

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
+#include <initializer_list>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -523,6 +524,15 @@ GuardedUdpDescriptor::GuardedUdpDescriptor(
     : ChainingTransportDescriptor(std::move(udp)), _settings(std::move(settings))
 {
     maxMessageSize = _settings.MaxDatagram;
+    // The vendor calls create_transport, and is not prepared for an exception there.
+    for (DueThread *const thread : std::initializer_list<DueThread *>{
+             _settings.Keys.get(), _settings.Meeting.get(), _settings.Authentication.get()})
+    {
+        if (thread != nullptr)
+        {
+            thread->Prepare();
+        }
+    }
 }
 
 TransportInterface *GuardedUdpDescriptor::create_transport() const

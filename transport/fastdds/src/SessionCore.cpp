@@ -111,6 +111,8 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
     attributes.participantID = static_cast<std::int32_t>(_number.Get());
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
+    // Before the vendor has the participant: it would go on calling a session whose start has failed.
+    _announceTimer.Start([this] { Announce(); });
     // Disabled at first, so that nothing is discovered before _participant is known here.
     _participant = rtps::RTPSDomain::createParticipant(static_cast<std::uint32_t>(settings.Domain), false,
                                                        attributes, this);
@@ -120,7 +122,6 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                              ": no free port, or no usable network interface" +
                              (settings.Security ? ", or it does not accept the keys" : ""));
     }
-    _announceTimer.Start([this] { Announce(); });
     _participant.load()->enable();
     if (settings.Security && !KeyAddressees::Heed(*_participant))
     {
