@@ -252,7 +252,8 @@ Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::st
     {
         return OptionsOf(command);
     }
-    static const Candidates ofFiles = {"check", "info", "recover", "play", "merge", "knew", "init", "sign"};
+    static const Candidates ofFiles = {"check", "info", "recover", "play", "merge",
+                                       "knew",  "init", "sign",    "run",  "new"};
     if (ofFiles.contains(command.get_name()))
     {
         return {Files};

@@ -106,6 +106,7 @@ int RunProgram(int argc, char **argv)
     AddTopCommand(app, chosen);
     AddDoctorCommand(app, chosen);
     AddKeysCommand(app, chosen);
+    AddLabCommand(app, chosen);
     TakeOneValueEach(app);
     // A line for completion is unfinished, so it cannot be parsed.
     const std::vector<std::string> words(argv + 1, argv + argc);

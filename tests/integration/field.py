@@ -12,13 +12,10 @@ import subprocess
 import tempfile
 
 import harness
+from rabit_lab.radio import Unsupported
 
 PREFIX = "rbtfield"
 NAME = re.compile(PREFIX + r"-(\d+)-")
-
-
-class Unsupported(Exception):
-    """This machine does not allow what is needed."""
 
 
 def run(*argv, text=None):

@@ -70,8 +70,10 @@ void AddNodeOptions(CLI::App &app, NodeOptions &options)
     app.add_option("--interface", options.Interfaces,
                    "Network interface to use, by name or address, in place of the file's; may be repeated")
         ->delimiter(',')
-        ->allow_extra_args(false);
-    app.add_option("--record", options.Record, "Folder to record this node into, in place of the file's");
+        ->allow_extra_args(false)
+        ->envname("RABIT_NODE_INTERFACE");
+    app.add_option("--record", options.Record, "Folder to record this node into, in place of the file's")
+        ->envname("RABIT_NODE_RECORD");
     app.add_flag("--check", options.Check, "Check the options and files, start nothing");
 }
 

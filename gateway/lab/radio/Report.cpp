@@ -32,6 +32,7 @@ json NodeAsJson(const Medium &medium, Time now, std::size_t node)
             {"ip_bytes", counters.IpSent},
             {"lost", counters.Lost},
             {"missed", counters.Missed},
+            {"collided", counters.Collided},
             {"nobody", counters.Nobody},
             {"most_in_a_second", counters.AirSecond.Most()},
             {"most_ip_in_a_second", counters.IpSecond.Most()},

@@ -499,6 +499,73 @@ TEST_F(MediumTest, TheTapSeesEachFrameOnceAtTheEndOfItsAir)
     EXPECT_EQ(seen, (std::vector<std::pair<Time, std::size_t>>{{8ms, 1000}, {12ms, 500}}));
 }
 
+TEST_F(MediumTest, LossesComeInBurstsOfTheLengthAskedForAndInTheShareAskedFor)
+{
+    Make(2, std::nullopt);
+    medium->SetLink(0s, 0, 1, {.Loss = 0.2, .Burst = 8});
+    std::size_t lost = 0;
+    std::size_t bursts = 0;
+    bool wasLost = false;
+    constexpr int frames = 100'000;
+    for (int k = 0; k < frames; ++k)
+    {
+        medium->Offer(std::chrono::milliseconds(k), 0, Unicast(1, 100));
+        const bool isLost = Until(std::chrono::milliseconds(k)).empty();
+        lost += isLost ? 1 : 0;
+        bursts += isLost && !wasLost ? 1 : 0;
+        wasLost = isLost;
+    }
+    EXPECT_NEAR(static_cast<double>(lost) / frames, 0.2, 0.02);
+    EXPECT_NEAR(static_cast<double>(lost) / static_cast<double>(bursts), 8, 0.8);
+}
+
+TEST_F(MediumTest, ALossNearAllKeepsItsShareWithLongerBursts)
+{
+    Make(2, std::nullopt);
+    medium->SetLink(0s, 0, 1, {.Loss = 0.95, .Burst = 2});
+    std::size_t heard = 0;
+    for (int k = 0; k < 20'000; ++k)
+    {
+        medium->Offer(std::chrono::milliseconds(k), 0, Unicast(1, 100));
+        heard += Until(std::chrono::milliseconds(k)).size();
+    }
+    EXPECT_NEAR(static_cast<double>(heard) / 20'000, 0.05, 0.02);
+}
+
+TEST_F(MediumTest, HiddenStationsSendAtTheSameTimeAndSpoilEachOthersFramesAtAThird)
+{
+    Make(3, 1'000'000);
+    medium->SetHidden(0s, 0, 2, true);
+    medium->Offer(0ms, 0, Unicast(1, 1000));
+    medium->Offer(1ms, 2, Unicast(1, 1000));
+    EXPECT_THAT(Until(1s), IsEmpty());
+    EXPECT_EQ(medium->CountersOf(1).Collided, 2u);
+    EXPECT_EQ(medium->Busy(1s), 9ms);
+    medium->Offer(1s, 0, Unicast(1, 1000));
+    medium->Offer(1s + 8ms, 2, Unicast(1, 1000));  // begins when the first one ends
+    EXPECT_EQ(ArrivalsUntil(2s), (Arrivals{{1s + 8ms, 1}, {1s + 16ms, 1}}));
+}
+
+TEST_F(MediumTest, AFrameOfAHiddenStationIsSpoiledOnlyWhereTheOtherIsHeard)
+{
+    Make(4, 1'000'000);
+    medium->SetHidden(0s, 0, 2, true);
+    medium->SetHidden(0s, 2, 3, true);
+    medium->Offer(0ms, 0, Multicast(1000));
+    medium->Offer(0ms, 2, Multicast(1000));
+    EXPECT_EQ(ArrivalsUntil(1s), (Arrivals{{8ms, 3}}));  // 1 hears both, 3 hears 0 alone
+}
+
+TEST_F(MediumTest, StationsThatAreNotHiddenAnyMoreTakeTurnsAgain)
+{
+    Make(3, 1'000'000);
+    medium->SetHidden(0s, 0, 2, true);
+    medium->SetHidden(1s, 0, 2, false);
+    medium->Offer(1s, 0, Unicast(1, 1000));
+    medium->Offer(1s, 2, Unicast(1, 1000));
+    EXPECT_EQ(ArrivalsUntil(2s), (Arrivals{{1s + 8ms, 1}, {1s + 16ms, 1}}));
+}
+
 TEST_F(MediumTest, TwoOfOneNameOrAddressAreRefused)
 {
     Make(2, 1'000);

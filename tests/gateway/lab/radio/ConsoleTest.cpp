@@ -162,5 +162,23 @@ TEST_F(ConsoleTest, WhatIsNotUnderstoodIsAnsweredWithTheReasonAndChangesNothing)
     EXPECT_FALSE(medium.IsOut());
 }
 
+TEST_F(ConsoleTest, LossMayComeInBursts)
+{
+    EXPECT_EQ(Tell("loss 20 burst 8 ground uav1"), json({{"ok", true}}));
+    EXPECT_EQ(medium.LinkOf(0, 1).Burst, 8);
+    EXPECT_EQ(medium.LinkOf(1, 0).Burst, 1);
+    EXPECT_EQ(Tell("loss 10 ground uav1"), json({{"ok", true}}));
+    EXPECT_EQ(medium.LinkOf(0, 1).Burst, 1);
+    EXPECT_TRUE(Tell("loss 10 burst 0").contains("error"));
+}
+
+TEST_F(ConsoleTest, NodesAreHiddenFromEachOther)
+{
+    EXPECT_EQ(Tell("hidden uav1 uav2 on"), json({{"ok", true}}));
+    EXPECT_EQ(Tell("hidden * * off"), json({{"ok", true}}));
+    EXPECT_TRUE(Tell("hidden uav1 nobody on").contains("error"));
+    EXPECT_TRUE(Tell("hidden uav1 uav2").contains("error"));
+}
+
 }  // namespace
 }  // namespace Rabit::Radio

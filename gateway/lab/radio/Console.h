@@ -15,9 +15,10 @@ namespace Rabit::Radio
 //   queue BYTES [NODE]                what a node's queue holds
 //   overhead BYTES                    that each frame takes on the air beyond its own
 //   delay MS [jitter MS] [FROM TO]    after the air
-//   loss PERCENT [FROM TO]
+//   loss PERCENT [burst FRAMES] [FROM TO]    in bursts of so many frames on average; 1: each by itself
 //   duplicate PERCENT [FROM TO]       of the frames heard, those that come twice
 //   deaf NODE FROM, hear NODE FROM    NODE hears nothing of FROM, and hears it again
+//   hidden NODE NODE on|off           they do not hear each other, and may send at the same time
 //   reorder on|off                    whether jitter may change the order of a link's frames
 //   outage on|off                     nobody hears anything
 //   counters                          of the medium and of each node, since the beginning or the last reset

@@ -74,11 +74,8 @@ void Medium::Offer(Time now, std::size_t node, FramePointer frame)
         sender.Counters.Dropped.Add(bytes);
         return;
     }
-    if (!_air)
-    {
-        BeginNext(now);
-        Run(now);
-    }
+    BeginNext(now);
+    Run(now);
 }
 
 void Medium::Advance(Time now, std::vector<Arrival> &arrived)
@@ -96,9 +93,9 @@ void Medium::Advance(Time now, std::vector<Arrival> &arrived)
 std::optional<Time> Medium::NextEvent() const
 {
     std::optional<Time> next;
-    if (_air)
+    for (const OnAir &frame : _air)
     {
-        next = _air->Ends;
+        next = std::min(next.value_or(frame.Ends), frame.Ends);
     }
     if (!_coming.empty())
     {
@@ -111,15 +108,18 @@ void Medium::SetRate(Time now, std::optional<std::int64_t> bitsPerSecond)
 {
     Checked(bitsPerSecond);
     now = Run(now);
-    if (_air && _rate)
+    for (OnAir &frame : _air)
     {
-        _air->Left -= (now - _air->Since).count() * *_rate;
-        _air->Since = now;
+        if (_rate)
+        {
+            frame.Left -= (now - frame.Since).count() * *_rate;
+            frame.Since = now;
+        }
     }
     _rate = bitsPerSecond;
-    if (_air)
+    for (OnAir &frame : _air)
     {
-        _air->Ends = EndOf(_air->Since, _air->Left);
+        frame.Ends = EndOf(frame.Since, frame.Left);
     }
     Run(now);
 }
@@ -128,21 +128,34 @@ void Medium::SetOutage(Time now, bool on)
 {
     Run(now);
     _out = on;
-    if (_air && on)
+    for (OnAir &frame : _air)
     {
-        _air->Spoiled = true;
+        frame.Spoiled = frame.Spoiled || on;
     }
+}
+
+void Medium::SetHidden(Time now, std::size_t one, std::size_t other, bool hidden)
+{
+    if (one >= Count() || other >= Count() || one == other)
+    {
+        throw std::invalid_argument("two nodes are hidden from each other");
+    }
+    now = Run(now);
+    LinkAt(one, other).Hidden = hidden;
+    LinkAt(other, one).Hidden = hidden;
+    BeginNext(now);
+    Run(now);
 }
 
 void Medium::SetLink(Time now, std::size_t from, std::size_t to, const LinkSettings &settings)
 {
     if (from >= Count() || to >= Count() || settings.Loss < 0 || settings.Loss > 1 ||
         settings.Duplicate < 0 || settings.Duplicate > 1 || settings.Delay < Time{0} ||
-        settings.Jitter < Time{0})
+        settings.Jitter < Time{0} || !(settings.Burst >= 0 && settings.Burst <= MostBurst))
     {
         throw std::invalid_argument(
-            "a link is between two nodes, with a loss and a share of duplicates from 0 to 1 and times of at "
-            "least 0");
+            "a link is between two nodes, with a loss and a share of duplicates from 0 to 1, and times and "
+            "bursts of at least 0");
     }
     Run(now);
     LinkAt(from, to).Settings = settings;
@@ -160,7 +173,12 @@ Time Medium::QueueAge(Time now, std::size_t node) const
 
 Time Medium::Busy(Time now) const
 {
-    return _busy + (_air ? std::clamp(now, _air->Began, _air->Ends) - _air->Began : Time{0});
+    Time last = _busySince;
+    for (const OnAir &frame : _air)
+    {
+        last = std::max(last, frame.Ends);
+    }
+    return _busy + std::clamp(now, _busySince, last) - _busySince;
 }
 
 void Medium::Reset(Time now)
@@ -171,10 +189,7 @@ void Medium::Reset(Time now)
         node.Counters = {};
     }
     _busy = Time{0};
-    if (_air)
-    {
-        _air->Began = now;
-    }
+    _busySince = now;
     _countedSince = now;
 }
 
@@ -183,44 +198,75 @@ void Medium::Reset(Time now)
 Time Medium::Run(Time now)
 {
     _now = std::max(_now, now);
-    while (_air && _air->Ends <= _now)
+    for (auto first = FirstToEnd(); first != _air.end() && first->Ends <= _now; first = FirstToEnd())
     {
-        const Time ended = _air->Ends;
-        Complete();
-        BeginNext(ended);
+        const Time ended = first->Ends;
+        Complete(first);
+        // Frames that end at the same time do not overlap with the next one.
+        if (const auto other = FirstToEnd(); other == _air.end() || other->Ends > ended)
+        {
+            BeginNext(ended);
+        }
     }
     return _now;
 }
 
+std::vector<Medium::OnAir>::iterator Medium::FirstToEnd()
+{
+    return std::min_element(_air.begin(), _air.end(),
+                            [](const OnAir &a, const OnAir &b) { return a.Ends < b.Ends; });
+}
+
+// A node begins no frame while it hears another one.
+bool Medium::MaySend(std::size_t node) const
+{
+    return std::all_of(_air.begin(), _air.end(),
+                       [&](const OnAir &frame)
+                       { return frame.From != node && _links[frame.From * _nodes.size() + node].Hidden; });
+}
+
 void Medium::BeginNext(Time at)
 {
+    const std::size_t last = _lastTurn;
     for (std::size_t turn = 1; turn <= _nodes.size(); ++turn)
     {
-        const std::size_t node = (_lastTurn + turn) % _nodes.size();
-        if (SendQueue &queue = _nodes[node].Queue; !queue.IsEmpty())
+        const std::size_t node = (last + turn) % _nodes.size();
+        if (!_nodes[node].Queue.IsEmpty() && MaySend(node))
         {
-            SendQueue::Waiting first = queue.Pop();
-            const auto bits = static_cast<std::int64_t>(first.What->size() + _overhead) * 8;
-            _air = OnAir{node,
-                         std::move(first.What),
-                         _overhead,
-                         at - first.Since,
-                         at,
-                         at,
-                         EndOf(at, bits * Nano),
-                         bits * Nano,
-                         _out};
-            _lastTurn = node;
-            return;
+            Begin(at, node);
         }
     }
 }
 
-void Medium::Complete()
+void Medium::Begin(Time at, std::size_t node)
 {
-    const OnAir sent = std::move(*_air);
-    _air.reset();
-    _busy += sent.Ends - sent.Began;
+    SendQueue::Waiting first = _nodes[node].Queue.Pop();
+    const auto bits = static_cast<std::int64_t>(first.What->size() + _overhead) * 8;
+    OnAir next{node, std::move(first.What),  _overhead,   at - first.Since,
+               at,   EndOf(at, bits * Nano), bits * Nano, _out,
+               {}};
+    if (_air.empty())
+    {
+        _busySince = at;
+    }
+    for (OnAir &frame : _air)
+    {
+        frame.With.push_back(node);
+        next.With.push_back(frame.From);
+    }
+    _air.push_back(std::move(next));
+    _lastTurn = node;
+}
+
+void Medium::Complete(std::vector<OnAir>::iterator frame)
+{
+    const OnAir sent = std::move(*frame);
+    _air.erase(frame);
+    if (_air.empty())
+    {
+        _busy += sent.Ends - _busySince;
+        _busySince = sent.Ends;
+    }
     NodeCounters &counters = _nodes[sent.From].Counters;
     counters.OnAir(sent.Ends, *sent.What, sent.Overhead, sent.Waited);
     if (_tap)
@@ -251,12 +297,22 @@ void Medium::Complete()
 void Medium::Reach(std::size_t from, std::size_t to, const OnAir &sent)
 {
     Link &link = LinkAt(from, to);
-    if (sent.Spoiled || link.Settings.Deaf)
+    if (sent.Spoiled || link.Settings.Deaf || link.Hidden)
     {
         ++_nodes[to].Counters.Missed;
         return;
     }
-    if (link.Settings.Loss > 0 && Random() < link.Settings.Loss)
+    const auto disturbs = [this, to](std::size_t other)
+    {
+        const Link &its = LinkAt(other, to);
+        return other == to || (!its.Hidden && !its.Settings.Deaf);
+    };
+    if (std::any_of(sent.With.begin(), sent.With.end(), disturbs))
+    {
+        ++_nodes[to].Counters.Collided;
+        return;
+    }
+    if (IsLost(link))
     {
         ++_nodes[to].Counters.Lost;
         return;
@@ -266,6 +322,24 @@ void Medium::Reach(std::size_t from, std::size_t to, const OnAir &sent)
     {
         Arrive(link, to, sent);
     }
+}
+
+// In the long run the share `Loss` is lost, in bursts of `Burst` frames on average. A loss near 1 makes the
+// bursts longer, since a good link does not last less than a frame.
+bool Medium::IsLost(Link &link)
+{
+    const double loss = link.Settings.Loss;
+    if (loss <= 0 || loss >= 1 || link.Settings.Burst <= 1)
+    {
+        link.Bad = false;
+        return loss > 0 && Random() < loss;
+    }
+    const double burst = std::max(link.Settings.Burst, loss / (1 - loss));
+    if (Random() < (link.Bad ? 1 / burst : loss / ((1 - loss) * burst)))
+    {
+        link.Bad = !link.Bad;
+    }
+    return link.Bad;
 }
 
 void Medium::Arrive(Link &link, std::size_t to, const OnAir &sent)

@@ -16,7 +16,7 @@ namespace Rabit::Radio
 //   sent           {frames, bytes, ip_bytes} of all nodes; bytes with the overhead, ip_bytes IP packets alone
 //   nodes          {name: ...}:
 //     offered, dropped, multicast, unicast, heard    {frames, bytes}; NodeCounters.h says what each is
-//     ip_bytes, lost, missed, nobody
+//     ip_bytes, lost, missed, collided, nobody
 //     most_in_a_second, most_ip_in_a_second          bytes on the air in the worst second, wherever it begins
 //     queued         bytes that wait
 //     wait_ms        for which the first of them has waited

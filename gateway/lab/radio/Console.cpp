@@ -107,8 +107,7 @@ public:
         }
         else if (what == "loss")
         {
-            const double loss = Number(Next(), 0, 100) / 100;
-            EachLink([&](LinkSettings &link) { link.Loss = loss; });
+            SetLoss();
         }
         else if (what == "duplicate")
         {
@@ -118,6 +117,10 @@ public:
         else if (what == "deaf" || what == "hear")
         {
             SetDeaf(what == "deaf");
+        }
+        else if (what == "hidden")
+        {
+            SetHidden();
         }
         else if (what == "reorder" || what == "outage")
         {
@@ -209,6 +212,41 @@ private:
                 link.Delay = delay;
                 link.Jitter = jitter;
             });
+    }
+
+    void SetLoss()
+    {
+        const double loss = Number(Next(), 0, 100) / 100;
+        double burst = 1;
+        if (_at < _words.size() && _words[_at] == "burst")
+        {
+            ++_at;
+            burst = Number(Next(), 1, Medium::MostBurst);
+        }
+        EachLink(
+            [&](LinkSettings &link)
+            {
+                link.Loss = loss;
+                link.Burst = burst;
+            });
+    }
+
+    void SetHidden()
+    {
+        const std::vector<std::size_t> ones = Nodes(Next());
+        const std::vector<std::size_t> others = Nodes(Next());
+        const bool hidden = Switch(Next());
+        End();
+        for (const std::size_t one : ones)
+        {
+            for (const std::size_t other : others)
+            {
+                if (one != other)
+                {
+                    _medium.SetHidden(_now, one, other, hidden);
+                }
+            }
+        }
     }
 
     void SetDeaf(bool deaf)

@@ -46,16 +46,17 @@ private:
 // overhead is included. Members named Ip count IP packets with their headers, as budgets do.
 struct NodeCounters
 {
-    Count Offered;             // what the node gave to its queue
-    Count Dropped;             // of it: the queue was full
-    Count Multicast;           // on the air, one for all receivers
-    Count Unicast;             // on the air
-    Count Heard;               // of others
-    std::uint64_t IpSent = 0;  // on the air, bytes
-    std::uint64_t Lost = 0;    // would have been heard and were lost at random
-    std::uint64_t Missed = 0;  // would have been heard but for deafness or an outage
-    std::uint64_t Nobody = 0;  // on the air for an address that no node has
-    Time LongestWait{0};       // in the queue, of what was sent
+    Count Offered;               // what the node gave to its queue
+    Count Dropped;               // of it: the queue was full
+    Count Multicast;             // on the air, one for all receivers
+    Count Unicast;               // on the air
+    Count Heard;                 // of others
+    std::uint64_t IpSent = 0;    // on the air, bytes
+    std::uint64_t Lost = 0;      // would have been heard and were lost at random
+    std::uint64_t Missed = 0;    // would have been heard but for deafness or an outage
+    std::uint64_t Collided = 0;  // would have been heard but for another frame at the same time
+    std::uint64_t Nobody = 0;    // on the air for an address that no node has
+    Time LongestWait{0};         // in the queue, of what was sent
     SecondWindow AirSecond;
     SecondWindow IpSecond;
     // Counts by kind of the frames on the air. At most MostKinds kinds; the rest is under a Kind of zeros.

@@ -28,11 +28,14 @@ struct MediumSettings
 // One direction between two nodes.
 struct LinkSettings
 {
-    double Loss = 0;  // share of the frames, 0 to 1, independent for each receiver and each frame
+    double Loss = 0;  // share of the frames, 0 to 1
     Time Delay{0};
     Time Jitter{0};  // up to so much more or less than the delay, evenly
     bool Deaf = false;
     double Duplicate = 0;  // share of the frames heard that come twice
+    // Number of frames in a row that are lost, on average (Gilbert's model: a link is good or bad, and
+    // changes with each frame). Up to 1 each frame is lost by itself.
+    double Burst = 1;
 };
 
 // A frame that has come to a node at that time.
@@ -44,15 +47,16 @@ struct Arrival
 };
 
 // A shared half-duplex radio channel. Each node has a bounded queue. One frame at a time is on the air, for
-// (bytes + overhead) * 8 / rate. The nodes that have something to send take turns, a frame each. A multicast
+// (bytes + overhead) * 8 / rate, or several if their senders are hidden from each other. The nodes that have
+// something to send take turns, a frame each. A multicast
 // or broadcast frame is on the air once and reaches all others; a unicast frame is on the air once and
 // reaches at most the node with its address. Each receiver then loses the frame or not. If not, the frame
 // arrives after the link's delay, in order unless reordering is switched on.
 //
 // Properties of real radios that are left out: collisions and back-off (turns are perfect), acknowledgements
 // and repetitions of unicast frames by the radio, a lower rate for multicast, rates that differ between
-// links, hidden nodes, interference, bursts of loss, and the back-pressure by which a full driver's queue
-// blocks a socket. An outage is silence at the receivers: senders do not notice it and go on using the air.
+// links, interference, and the back-pressure by which a full driver's queue blocks a socket. An outage is
+// silence at the receivers: senders do not notice it and go on using the air.
 //
 // Pure: no clock, thread or socket. The caller gives the times. A time before the last one counts as the last
 // one. One thread at a time.
@@ -63,6 +67,7 @@ public:
     explicit Medium(const MediumSettings &settings);
 
     static constexpr std::int64_t MostBitsPerSecond = 10'000'000'000;
+    static constexpr double MostBurst = 1e6;
 
     // Nodes are numbered from 0 in this order. Throws std::invalid_argument if the name or the address
     // exists already.
@@ -86,6 +91,9 @@ public:
     void SetQueue(std::size_t node, std::size_t bytes) { _nodes.at(node).Queue.SetLimit(bytes); }
     void SetOverhead(std::size_t bytes) { _overhead = bytes; }
     void SetReordering(bool on) { _reordering = on; }
+    // Nodes that are hidden from each other do not hear each other, and so may send at the same time. A frame
+    // is lost at a receiver that hears another frame while it is on the air, or that sends itself.
+    void SetHidden(Time now, std::size_t one, std::size_t other, bool hidden);
     // A frame of which any part is on the air during an outage reaches no node.
     void SetOutage(Time now, bool on);
     // Applies to frames that leave the air after `now`.
@@ -116,6 +124,8 @@ private:
     {
         LinkSettings Settings;
         Time Last{0};  // when the latest frame comes
+        bool Hidden = false;
+        bool Bad = false;  // in a burst of losses
     };
 
     struct Later
@@ -134,15 +144,19 @@ private:
         std::size_t Overhead;
         Time Waited;
         Time Since;  // of the last change of rate, or of its beginning
-        Time Began;
         Time Ends;
         std::int64_t Left;  // bits * 1e9 at Since
         bool Spoiled;
+        std::vector<std::size_t> With;  // senders of other frames that were on the air in that time
     };
 
     Time Run(Time now);
     void BeginNext(Time at);
-    void Complete();
+    void Begin(Time at, std::size_t node);
+    bool MaySend(std::size_t node) const;
+    bool IsLost(Link &link);
+    std::vector<OnAir>::iterator FirstToEnd();
+    void Complete(std::vector<OnAir>::iterator frame);
     void Reach(std::size_t from, std::size_t to, const OnAir &sent);
     void Arrive(Link &link, std::size_t to, const OnAir &sent);
     Time EndOf(Time since, std::int64_t left) const;
@@ -160,7 +174,8 @@ private:
     std::map<MacAddress, std::size_t> _byAddress;
     std::function<void(Time, const Frame &)> _tap;
     Time _now{0};
-    std::optional<OnAir> _air;
+    std::vector<OnAir> _air;
+    Time _busySince{0};  // while a frame is on the air
     std::size_t _lastTurn = 0;
     std::priority_queue<std::pair<std::uint64_t, Arrival>, std::vector<std::pair<std::uint64_t, Arrival>>,
                         Later>

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gateway.idl.h"
+
+namespace Rabit::Lab
+{
+
+// The changes from one `Gateway/Fleet` of a node to its next. The message comes once a second and tells of
+// all nodes, so a whole fleet's would be too many to look at one by one.
+class FleetFacts
+{
+public:
+    using Json = nlohmann::ordered_json;
+
+    // Returns one object for each change, without a time:
+    //   {"fact": "self", "incarnation": TEXT}                  once
+    //   {"fact": "peer", "of": NODE, "state": "UP", "reason": TEXT, "incarnation": TEXT}
+    //   {"fact": "problem", "subject": TEXT, "node": NODE, "reason": TEXT}, and the same with "solved"
+    //   {"fact": "air", "used": B/s, "budget": B/s, "capacity": B/s}     with each message
+    // Nothing if the bytes are no such message.
+    std::vector<Json> Look(std::span<const std::uint8_t> sample);
+
+private:
+    struct Peer
+    {
+        Gateway::NodeState State;
+        std::uint64_t Incarnation;
+    };
+    using Problem = std::tuple<std::string, std::string, std::string>;
+
+    std::optional<std::uint64_t> _incarnation;
+    std::map<std::string, Peer> _peers;
+    std::vector<Problem> _problems;  // in order
+};
+
+}  // namespace Rabit::Lab

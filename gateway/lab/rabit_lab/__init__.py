@@ -1,0 +1,1 @@
+"""Flies a user's own fleet through a scenario: ../README.md."""

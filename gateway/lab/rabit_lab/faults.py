@@ -1,0 +1,171 @@
+"""What a scenario does to a fleet: one method for each word of an event."""
+
+import json
+import signal
+
+from rabit_lab import flight as flights
+
+JOIN_S = 6  # before a `send` the tool joins the network, so that its outcome is not late by that
+
+
+class Faults:
+    """Carries out events when they are due, and ends them."""
+
+    def __init__(self, scenario, nets, nodes, flight, places, say):
+        self._scenario, self._nets, self._nodes, self._flight = scenario, nets, nodes, flight
+        self._places, self._say = places, say
+        self._due = []  # (time, what is to be done)
+        self._senders = {}  # event id -> (Process, [time of the message])
+        for event in scenario.events:
+            self._due.append((event.at, lambda event=event: self._begin(event)))
+            if event.verb == "send":
+                self._due.append((max(event.at - JOIN_S, 0), lambda event=event: self._join(event)))
+        for node in scenario.nodes.values():
+            if node.start is not None and node.start > 0:
+                self._due.append((node.start, lambda node=node: self._late_start(node.name)))
+
+    def run_due(self, now):
+        """Does what is due."""
+        ready = sorted((entry for entry in self._due if entry[0] <= now), key=lambda entry: entry[0])
+        self._due = [entry for entry in self._due if entry[0] > now]
+        for _, act in ready:
+            act()
+
+    def _late_start(self, name):
+        self._say(f"start {name}")
+        self._nodes.start(name)
+
+    def _begin(self, event):
+        until = event.at + event.length if event.length is not None else flights.FOREVER
+        instant = event.verb in ("kill", "stop", "start", "clock", "send")
+        concerns = event.values.get("nodes", [])
+        if event.verb == "deaf":
+            concerns = concerns + event.values["of"]
+        elif event.verb in ("loss", "delay"):
+            concerns = sorted(set(event.values["from"]) | set(event.values["to"]))
+        self._flight.faults.append(flights.Fault(event.at, event.at if instant else until, event.verb, concerns,
+                                                 event.text()))
+        self._say(event.text())
+        getattr(self, "_" + event.verb)(event, True)
+        if event.length is not None:
+            self._due.append((until, lambda: self._finish(event)))
+
+    def _finish(self, event):
+        self._say(f"end of: {event.text()}")
+        getattr(self, "_" + event.verb)(event, False)
+
+    def _networks(self, event):
+        wanted = event.values.get("network")
+        return [network for network in self._scenario.networks.values() if wanted in (None, network.name)]
+
+    def _tell(self, network, line):
+        self._nets.radios[network.name].tell(line)
+
+    def _kill(self, event, _):
+        for node in event.values["nodes"]:
+            self._nodes.kill(node)
+
+    def _stop(self, event, _):
+        self._nodes.stop(event.values["nodes"])
+
+    def _start(self, event, _):
+        for node in event.values["nodes"]:
+            self._nodes.start(node)
+
+    def _freeze(self, event, begins):
+        for node in event.values["nodes"]:
+            self._nodes.signal(node, signal.SIGSTOP if begins else signal.SIGCONT)
+
+    def _clock(self, event, _):
+        for node in event.values["nodes"]:
+            self._nodes.step_clock(node, event.values["step"])
+
+    def _disk(self, event, begins):
+        for node in event.values["nodes"]:
+            self._nodes.fill(node, begins)
+
+    def _cut(self, event, begins):
+        """The nodes hear each other, and nobody else hears them or is heard by them."""
+        for network in self._networks(event):
+            members = self._nets.members(network)
+            inside = [node for node in event.values["nodes"] if node in members]
+            for node in inside:
+                for other in members:
+                    if other not in inside:
+                        self._hear(network, node, other, not begins)
+                        self._hear(network, other, node, not begins)
+
+    def _deaf(self, event, begins):
+        for network in self._networks(event):
+            members = self._nets.members(network)
+            for node in event.values["nodes"]:
+                for other in event.values["of"]:
+                    if node != other and node in members and other in members:
+                        self._hear(network, node, other, not begins)
+
+    def _hear(self, network, node, other, hears):
+        self._tell(network, f"{'hear' if hears else 'deaf'} {node} {other}")
+
+    def _pairs(self, event, network):
+        members = self._nets.members(network)
+        return [(a, b) for a in event.values["from"] for b in event.values["to"]
+                if a != b and a in members and b in members]
+
+    def _loss(self, event, begins):
+        for network in self._networks(event):
+            if begins:
+                for a, b in self._pairs(event, network):
+                    self._tell(network, f"loss {event.values['loss']:g} burst {event.values['burst']:g} {a} {b}")
+            else:
+                self._nets.restore_loss(network)
+                if network.name in self._places:
+                    self._places[network.name].forget()
+
+    def _delay(self, event, begins):
+        for network in self._networks(event):
+            if begins:
+                for a, b in self._pairs(event, network):
+                    self._tell(network, f"delay {1000 * event.values['delay']:g} jitter "
+                                        f"{1000 * event.values['jitter']:g} {a} {b}")
+            else:
+                self._nets.restore_delay(network)
+
+    def _rate(self, event, begins):
+        for network in self._networks(event):
+            rate = event.values["rate"] if begins else network.rate
+            self._tell(network, f"rate {rate:.0f}" if rate else "rate unlimited")
+
+    def _outage(self, event, begins):
+        self._nets.radios[event.values["network"]].tell(f"outage {'on' if begins else 'off'}")
+
+    # A sender waits for its message on its standard input, so that joining the network takes none of the time that is
+    # measured.
+    def _join(self, event):
+        values = event.values
+        domain = self._flight.about.get(values["from"], {}).get("domain", "0")
+        argv = ["send", values["to"], values["type"], "-", "--json", "--wait", "20", "--domain", str(domain),
+                *values["options"]]
+        sent = self._flight.sent[id(event)] = flights.Sent("", 0.0, "")
+        began = []
+
+        def line(text):
+            try:
+                answer = json.loads(text)
+                sent.outcome, sent.seconds = answer["outcome"], self._nodes.now() - began[0]
+                sent.reason = answer["reason"] or sent.reason
+            except (ValueError, KeyError, TypeError, IndexError):
+                sent.reason = text
+        self._senders[id(event)] = (self._nodes.start_tool(values["from"], argv, line), began)
+
+    def _send(self, event, _):
+        process, began = self._senders[id(event)]
+        began.append(self._nodes.now())
+        try:
+            process.tell(json.dumps(event.values["value"]))
+            process.close_input()
+        except OSError:
+            pass  # it has ended, and said why
+
+    def waits(self):
+        """True while a `send` has no outcome yet."""
+        return any(process.running() for process, _ in self._senders.values())

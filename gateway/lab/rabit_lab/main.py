@@ -1,0 +1,74 @@
+"""The command line of `rabit lab`."""
+
+import argparse
+import datetime
+import pathlib
+import sys
+
+from rabit_lab import cage, runner, scenario as scenarios, tools
+from rabit_lab.marked import ScenarioError
+from rabit_lab.radio import Unsupported
+
+GOOD, FAILED, USAGE, IMPOSSIBLE, INTERRUPTED = 0, 1, 2, 3, 130
+
+
+def folder_for(scenario, wanted):
+    """A new folder for the results."""
+    now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y%m%dT%H%M%SZ")
+    path = pathlib.Path(wanted) if wanted else pathlib.Path("lab", f"{scenario.path.stem}_{now}")
+    if path.exists() and any(path.iterdir()):
+        raise ScenarioError(path, "is there already; name another folder with --to")
+    path.mkdir(parents=True, exist_ok=True)
+    return path.resolve()
+
+
+def run(options):
+    """`rabit lab run`"""
+    scenario = scenarios.read(options.scenario)
+    if options.check:
+        print(f"{options.scenario}: {len(scenario.nodes)} nodes, {len(scenario.networks)} networks, {len(scenario.events)} "
+              f"events, {len(scenario.expects)} expectations, {scenario.run:g} s")
+        return GOOD
+    found = tools.find()
+    folder = folder_for(scenario, options.to)
+    return cage.run(lambda: fly(scenario, folder, found))
+
+
+def fly(scenario, folder, found):
+    """In the cage. Returns the exit code."""
+    verdicts = runner.Runner(scenario, folder, found).run()
+    if verdicts is None:
+        print(f"interrupted; {folder}/report.html has what was seen")
+        return INTERRUPTED
+    print()
+    for verdict in verdicts:
+        print(f"{'met    ' if verdict.good else 'NOT MET'}  {verdict.text}" + (f": {verdict.detail}" if verdict.detail else ""))
+    wrong = [verdict for verdict in verdicts if not verdict.good]
+    print(f"\n{'FAILED' if wrong else 'PASSED'}: {len(verdicts) - len(wrong)} of {len(verdicts)} expectations met; "
+          f"{folder}/report.html")
+    return FAILED if wrong else GOOD
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(prog="rabit lab", description="Flies a fleet of one's own through a scenario.")
+    commands = parser.add_subparsers(dest="command", required=True)
+    command = commands.add_parser("run", help="run a scenario, and judge it")
+    command.add_argument("scenario", metavar="SCENARIO", help="a file of YAML")
+    command.add_argument("--to", metavar="FOLDER", help="folder of the results; default: lab/NAME_TIME")
+    command.add_argument("--check", action="store_true", help="only check the scenario; nothing starts")
+    command.set_defaults(act=run)
+    return parser.parse_args(arguments)
+
+
+def main(arguments):
+    """Returns the exit code: 0 passed, 1 failed, 2 a mistake in the scenario or the command line, 3 this machine does not
+    allow it, 130 interrupted."""
+    options = parse(arguments)
+    try:
+        return options.act(options)
+    except ScenarioError as error:
+        print(f"rabit: {error}", file=sys.stderr)
+        return USAGE
+    except Unsupported as error:
+        print(f"rabit: {error}", file=sys.stderr)
+        return IMPOSSIBLE

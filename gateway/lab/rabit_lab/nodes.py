@@ -1,0 +1,167 @@
+"""The processes of the fleet: start, end, and their output on the lab's time line."""
+
+import os
+import pathlib
+import signal
+import struct
+import subprocess
+
+from rabit_lab import cage, flight as flights, network as networks, processes
+
+STOP_S = 10  # for a node to end on SIGTERM
+DISK_BYTES = 4 << 30  # nominal; it takes memory only for what is in it
+LAST_LINES = 20
+
+
+class Nodes:
+    """Starts and ends the nodes, in their namespaces. `now` is the lab's clock."""
+
+    def __init__(self, scenario, nets, flight, folder, tools, now):
+        self._scenario, self._nets, self._flight = scenario, nets, flight
+        self._folder, self._tools, self.now = pathlib.Path(folder), tools, now
+        self._running = {}  # node -> (life index, Process)
+        self._steps = {}  # node -> seconds
+        self._logs = {}
+        self._stepped = {node for event in scenario.events if event.verb == "clock" for node in event.values["nodes"]}
+        self._mounted = set()
+        for event in scenario.events:
+            if event.verb == "disk":
+                for node in event.values["nodes"]:
+                    self._mount(node)
+
+    def disk(self, node):
+        """The folder `{disk}` of a node."""
+        path = self._folder / "disks" / node
+        path.mkdir(parents=True, exist_ok=True)
+        return path
+
+    def _mount(self, node):
+        if node not in self._mounted:
+            cage.mount("tmpfs", str(self.disk(node)), "tmpfs", 0, f"size={DISK_BYTES}")
+            self._mounted.add(node)
+
+    def fill(self, node, full):
+        """Makes the disk full, or empty again: its size is what is in it now."""
+        state = os.statvfs(self.disk(node))
+        used = (state.f_blocks - state.f_bfree) * state.f_frsize
+        size = max(used, state.f_frsize) if full else DISK_BYTES
+        cage.mount("tmpfs", str(self.disk(node)), "tmpfs", 32, f"size={size}")  # MS_REMOUNT
+
+    def step_clock(self, node, seconds):
+        self._steps[node] = self._steps.get(node, 0) + seconds
+        self._write_clock(node)
+
+    def _clock(self, node):
+        return self._folder / "clocks" / node
+
+    def _write_clock(self, node):
+        self._clock(node).parent.mkdir(exist_ok=True)
+        file = os.open(self._clock(node), os.O_WRONLY | os.O_CREAT, 0o644)
+        os.pwrite(file, struct.pack("=q", self._steps.get(node, 0)), 0)
+        os.close(file)
+
+    def start(self, name):
+        """A new life of a node that does not run."""
+        if self.is_running(name):
+            return
+        node = self._scenario.nodes[name]
+        number = len(self._flight.lives_of(name)) + 1
+        life = flights.Life(name, number, self.now(), self._steps.get(name, 0))
+        records = self.records(name, number)
+        records.mkdir(parents=True)
+        env = {"RABIT_NODE_RECORD": str(records), "RABIT_NODE_INTERFACE": ",".join(self._nets.addresses(name)),
+               "RABIT_LAB_DISK": str(self.disk(name)), **node.env}
+        if name in self._stepped:
+            self._write_clock(name)
+            env.update({"LD_PRELOAD": self._tools.stepped_clock, "STEPPED_CLOCK": str(self._clock(name))})
+        self._flight.lives.append(life)
+        index = len(self._flight.lives) - 1
+        argv = [word.replace("{disk}", str(self.disk(name))).replace("{address}", self._nets.addresses(name)[0])
+                for word in node.command]
+        argv = self._nets.spaces.inside(name, argv)
+        process = processes.Process(argv, env, on_line=lambda text: self._line(index, text), cwd=self._scenario.folder,
+                                    start_new_session=True)
+        self._running[name] = (index, process)
+
+    def records(self, name, number):
+        return self._folder / "records" / name / str(number)
+
+    def life_of(self, path):
+        """The index of the life that a recording belongs to, by its place; none for other files."""
+        parts = pathlib.Path(path).relative_to(self._folder).parts
+        if len(parts) < 3:
+            return None
+        lives = [index for index, life in enumerate(self._flight.lives) if life.node == parts[1]]
+        if parts[0] == "records" and parts[2].isdigit() and 1 <= int(parts[2]) <= len(lives):
+            return lives[int(parts[2]) - 1]
+        return None
+
+    def _line(self, index, text):
+        time, life = self.now(), self._flight.lives[index]
+        self._flight.output.append((time, life.node, text))
+        life.last_lines = [*life.last_lines[1 - LAST_LINES:], text]
+        log = self._logs.get(life.node)
+        if log is None:
+            (self._folder / "logs").mkdir(exist_ok=True)
+            # pylint: disable=consider-using-with
+            log = self._logs[life.node] = open(self._folder / "logs" / f"{life.node}.log", "w", encoding="utf-8")
+        log.write(f"{time:9.3f} {text}\n")
+        log.flush()
+
+    def is_running(self, name):
+        return name in self._running and self._running[name][1].running()
+
+    def look(self):
+        """Notices the nodes that have ended by themselves; returns their lives."""
+        found = []
+        for name, (index, process) in list(self._running.items()):
+            if not process.running():
+                self._ended(name, "itself", process.exit_code(5))
+                found.append(self._flight.lives[index])
+        return found
+
+    def _ended(self, name, by, code):
+        index, _ = self._running.pop(name)
+        life = self._flight.lives[index]
+        life.ended, life.by, life.code = self.now(), by, code
+
+    def signal(self, name, number):
+        """To the node and its children."""
+        if self.is_running(name):
+            try:
+                os.killpg(self._running[name][1].pid, number)
+            except ProcessLookupError:
+                pass
+
+    def kill(self, name):
+        if self.is_running(name):
+            self.signal(name, signal.SIGKILL)
+            self._ended(name, "kill", self._running[name][1].kill())
+
+    def stop(self, names, by="stop"):
+        """SIGTERM to all of them at once; their exit codes."""
+        running = [name for name in names if self.is_running(name)]
+        for name in running:
+            self.signal(name, signal.SIGCONT)
+            self.signal(name, signal.SIGTERM)
+        end = self.now() + STOP_S
+        for name in running:
+            process = self._running[name][1]
+            try:
+                code = process.exit_code(max(end - self.now(), 0.1))
+            except subprocess.TimeoutExpired:
+                self.signal(name, signal.SIGKILL)
+                process.kill()
+                code = None
+            self._ended(name, by, code)
+
+    def start_tool(self, host, argv, on_line):
+        """The program `rabit`, in the place of a node."""
+        environment = {"RABIT_INTERFACE": ",".join(self._nets.addresses(host))}
+        return processes.Process(self._nets.spaces.inside(host, [self._tools.rabit, *argv]), environment, on_line=on_line,
+                                 start_new_session=True)
+
+    def start_observer(self, domain):
+        """Records all messages as one observer on the air hears them."""
+        return self.start_tool(networks.OBSERVER, ["record", "--to", str(self._folder / "observer"), "--domain", str(domain)],
+                               lambda text: None)

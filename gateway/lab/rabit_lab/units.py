@@ -1,0 +1,67 @@
+"""Quantities as people write them: 10s, 250kbit/s, 16kB, 10%. Each function raises ValueError with what it expects."""
+
+import re
+
+NUMBER = re.compile(r"^\s*([-+]?[0-9]*\.?[0-9]+)\s*([A-Za-z/%]*)\s*$")
+
+
+def _quantity(value, scales, example):
+    if isinstance(value, bool) or not isinstance(value, (int, float, str)):
+        raise ValueError(f"expected {example}")
+    match = NUMBER.match(str(value))
+    if not match or match.group(2) not in scales:
+        raise ValueError(f"`{value}`: expected {example}")
+    return float(match.group(1)) * scales[match.group(2)]
+
+
+def seconds(value):
+    """A time or a length of time; a bare number is seconds."""
+    return _quantity(value, {"": 1, "s": 1, "ms": 0.001, "min": 60, "h": 3600}, "a time such as 10s, 20ms or 2min")
+
+
+def length(value):
+    """A length of time, not negative."""
+    result = seconds(value)
+    if result < 0:
+        raise ValueError(f"`{value}`: a length of time is not negative")
+    return result
+
+
+def bits_per_second(value):
+    """A rate; `unlimited` is 0."""
+    if value == "unlimited":
+        return 0
+    result = _quantity(value, {"bit/s": 1, "kbit/s": 1e3, "Mbit/s": 1e6, "Gbit/s": 1e9}, "a rate such as 250kbit/s")
+    if not 1 <= result <= 1e10:
+        raise ValueError(f"`{value}`: a rate is from 1 bit/s to 10 Gbit/s")
+    return result
+
+
+def size(value):
+    """Bytes."""
+    result = _quantity(value, {"": 1, "B": 1, "kB": 1e3, "MB": 1e6, "KiB": 1024, "MiB": 1024 ** 2},
+                       "a size such as 16kB")
+    if not 0 <= result <= 1e9:
+        raise ValueError(f"`{value}`: a size is from 0 to 1000MB")
+    return round(result)
+
+
+def percent(value):
+    """A share, as percent."""
+    result = _quantity(value, {"%": 1}, "a share such as 10%")
+    if not 0 <= result <= 100:
+        raise ValueError(f"`{value}`: a share is from 0% to 100%")
+    return result
+
+
+def number(value):
+    """A number without a unit."""
+    return _quantity(value, {"": 1}, "a number")
+
+
+def metres(value):
+    """A distance; a bare number is metres."""
+    result = _quantity(value, {"": 1, "m": 1, "km": 1000}, "a distance such as 800m")
+    if result <= 0:
+        raise ValueError(f"`{value}`: a distance is more than 0")
+    return result

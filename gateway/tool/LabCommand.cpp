@@ -1,0 +1,111 @@
+// rabit lab: runs the modules of ../lab, which are Python.
+#include <rabit/gateway/ConfigError.h>
+
+#include <CLI/CLI.hpp>
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "Command.h"
+#include "CommonOptions.h"
+#include "Output.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+struct Options
+{
+    std::string File;
+    std::string To;
+    bool Check = false;
+    bool Docker = false;
+};
+
+// Replaces this program. Returns only if that fails.
+int Become(std::vector<std::string> words)
+{
+    std::error_code failed;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", failed);
+    const std::filesystem::path folder = program.parent_path();
+    // Both are relative to the folder of this program, in the installed package as in the build tree.
+    const std::filesystem::path modules = (folder / RABIT_LAB_MODULES).lexically_normal();
+    if (failed || !std::filesystem::exists(modules / "rabit_lab", failed))
+    {
+        Output::Talk("there is no " + (modules / "rabit_lab").string() +
+                     "; the package rabit-tools brings it");
+        return ProblemFound;
+    }
+    const std::filesystem::path programs = (folder / RABIT_LAB_PROGRAMS).lexically_normal();
+    const char *const before = std::getenv("PYTHONPATH");
+    const std::string path = modules.string() + (before != nullptr ? std::string(":") + before : "");
+    setenv("PYTHONPATH", path.c_str(), 1);
+    setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
+    setenv("RABIT_LAB_RABIT", program.c_str(), 1);
+    setenv("RABIT_LAB_PROGRAMS", programs.c_str(), 1);
+    words.insert(words.begin(), {"python3", "-m", "rabit_lab"});
+    std::vector<char *> arguments;
+    for (std::string &word : words)
+    {
+        arguments.push_back(word.data());
+    }
+    arguments.push_back(nullptr);
+    execvp("python3", arguments.data());
+    Output::Talk("python3 cannot be run: " + std::generic_category().message(errno) +
+                 "; install python3 and python3-yaml");
+    return ProblemFound;
+}
+
+std::vector<std::string> WordsOf(const char *command, const Options &options)
+{
+    std::vector<std::string> words = {command, options.File};
+    if (!options.To.empty())
+    {
+        words.insert(words.end(), {"--to", options.To});
+    }
+    if (options.Check)
+    {
+        words.emplace_back("--check");
+    }
+    if (options.Docker)
+    {
+        words.emplace_back("--docker");
+    }
+    return words;
+}
+
+}  // namespace
+
+void AddLabCommand(CLI::App &app, Chosen &chosen)
+{
+    CLI::App *lab = app.add_subcommand("lab", "Flies a fleet of one's own through a scenario with faults");
+    lab->require_subcommand(1);
+    const auto add = [&chosen, lab](const char *name, const char *what, const char *argument,
+                                    const char *file, const char *to)
+    {
+        auto options = std::make_shared<Options>();
+        CLI::App *command = lab->add_subcommand(name, what);
+        command->add_option(argument, options->File, file)->required();
+        command->add_option("--to", options->To, to);
+        command->callback([options, name, &chosen]
+                          { chosen.RunToEnd = [options, name] { return Become(WordsOf(name, *options)); }; });
+        return std::pair(command, options);
+    };
+    const auto [run, options] = add("run", "Runs a scenario, and judges it", "SCENARIO", "A file of YAML",
+                                    "Folder of the results, which is made (default: lab/NAME_TIME)");
+    run->add_flag("--check", options->Check, "Only check the scenario; nothing starts");
+    run->add_flag("--docker", options->Docker, "Each node in a container");
+    AddExamples(*run, {"rabit lab run flight.yaml", "rabit lab run flight.yaml --to results --check"});
+    add("new", "Writes a scenario for the configurations in a folder", "FOLDER",
+        "The folder with NODE.yaml files", "The file, which is made (default: FOLDER/scenario.yaml)");
+}
+
+}  // namespace Rabit::Tool
