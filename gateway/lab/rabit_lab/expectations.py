@@ -58,7 +58,8 @@ def result(wrong, good):
 
 def unrecorded(flight, nodes):
     """The names among these that wrote no recording, so that nothing is known of what they saw."""
-    return [node for node in nodes if flight.lives_of(node) and not any(life.recorded for life in flight.lives_of(node))]
+    return [node for node in nodes if not flight.scenario.nodes[node].plain and flight.lives_of(node)
+            and not any(life.recorded for life in flight.lives_of(node))]
 
 
 NO_RECORDING = "wrote no recording: it takes no RABIT_NODE_RECORD (Rabit::RunNode does)"
@@ -111,7 +112,9 @@ class Reaches(Expectation):
             life = flight.life_at(node, self.after + self.within)
             incarnation = life.incarnation if life else None
             for index, observer in flight.observers(node):
-                if observer.node not in self.at or not observer.is_there(self.after + self.within):
+                if observer.node not in self.at or not observer.is_there(self.after) \
+                        or not observer.is_there(self.after + self.within) \
+                        or any(a < self.after + self.within and b > self.after for a, b in flight.frozen(observer.node)):
                     continue
                 seen += 1
                 changes = flight.peers[index, node].since(self.after)

@@ -5,7 +5,7 @@ import datetime
 import pathlib
 import sys
 
-from rabit_lab import cage, runner, scenario as scenarios, tools
+from rabit_lab import cage, new, runner, scenario as scenarios, tools
 from rabit_lab.marked import ScenarioError
 from rabit_lab.radio import Unsupported
 
@@ -49,6 +49,12 @@ def fly(scenario, folder, found):
     return FAILED if wrong else GOOD
 
 
+def make(options):
+    """`rabit lab new`"""
+    print(new.write(options.folder, options.to))
+    return GOOD
+
+
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="rabit lab", description="Flies a fleet of one's own through a scenario.")
     commands = parser.add_subparsers(dest="command", required=True)
@@ -57,6 +63,10 @@ def parse(arguments):
     command.add_argument("--to", metavar="FOLDER", help="folder of the results; default: lab/NAME_TIME")
     command.add_argument("--check", action="store_true", help="only check the scenario; nothing starts")
     command.set_defaults(act=run)
+    command = commands.add_parser("new", help="write a scenario for the configurations of a folder")
+    command.add_argument("folder", metavar="FOLDER")
+    command.add_argument("--to", metavar="FILE", help="the file, which is made; default: FOLDER/scenario.yaml")
+    command.set_defaults(act=make)
     return parser.parse_args(arguments)
 
 

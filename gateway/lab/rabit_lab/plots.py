@@ -119,13 +119,13 @@ def worst_states(flight, node):
 
 def lines(title, flight, unit, series, note=""):
     """`series`: {name: [(time, value)]}; those with the largest values are shown."""
-    ranked = sorted(series.items(), key=lambda item: -max((value for _, value in item[1]), default=0))
+    ranked = sorted(series.items(), key=lambda item: -max((value for _, value in item[1] if value is not None), default=0))
     shown = ranked[:MOST_LINES]
     rows = (len(shown) + 3) // 4
     picture = Picture(title + note, flight, 220 + 16 * rows)
     picture.bottom = 196
     picture.frame()
-    top = max((value for _, points in shown for _, value in points), default=0) or 1
+    top = max((value for _, points in shown for _, value in points if value is not None), default=0) or 1
     step = nice_step(top, 4)
     top = step * math.ceil(top / step - 1e-9)
     for n in range(round(top / step) + 1):
@@ -168,8 +168,9 @@ def ages(flight):
                 for column in range(first, last + 1):
                     until = min(end, (column + 1) * flight.end / COLUMNS)
                     columns[column] = max(columns.get(column, 0), age + until - begin)
-            series[f"{origin} at {observer}"] = [((column + 0.5) * flight.end / COLUMNS, value)
-                                                 for column, value in sorted(columns.items())]
+            # A column without a value, because the observer was not there, breaks the line.
+            series[f"{origin} at {observer}"] = [((column + 0.5) * flight.end / COLUMNS, columns.get(column))
+                                                 for column in range(COLUMNS)]
         result[message] = lines(f"Age of {message}", flight, "s", series)
     return result
 

@@ -30,6 +30,7 @@ class Runner:
         self._interrupted = threading.Event()
         self._table = table.Table(scenario, self.flight)
         self._observer = None
+        self._failed_start = False
         self._nets = self._nodes = self._facts = self._faults = None
         self._places = {}
 
@@ -66,7 +67,8 @@ class Runner:
         return None if interrupted else verdicts
 
     def _expects(self):
-        return [expectations.Stays("no node ends by itself", 0), *self.scenario.expects]
+        stays = expectations.Stays("no node ends by itself", 0)
+        return [stays] if self._failed_start else [stays, *self.scenario.expects]
 
     def _fly(self):
         """Until the end of the run; False if it was interrupted."""
@@ -77,7 +79,7 @@ class Runner:
             for life in self._nodes.look():
                 self.say(f"{life.node} ended by itself with {life.code}: {' | '.join(life.last_lines[-3:])}")
                 if life.ended - life.began < SETTLE_S and life.number == 1 and life.code != 0:
-                    self.flight.notes.append(f"{life.node} did not start: the run was ended at {now:.1f} s")
+                    self._failed_start = True
                     return True
             self._facts.take(self._on_fields)
             if self.scenario.observe and self._observer is None and self.flight.about:
@@ -142,7 +144,7 @@ class Runner:
                 self.flight.notes.append(f"{name}: the emulated channel was late, by {late['most_us'] / 1000:.1f} ms at most; "
                                          f"{late['unwritten']} frames did not fit into a node's device")
         for node, lives in ((node, self.flight.lives_of(node)) for node in self.scenario.nodes):
-            if lives and not any(life.recorded for life in lives):
+            if lives and not self.scenario.nodes[node].plain and not any(life.recorded for life in lives):
                 self.flight.notes.append(f"{node} wrote no recording, so nothing is known of what it saw: its program takes "
                                          "no RABIT_NODE_RECORD (Rabit::RunNode does)")
         for place in self._places.values():

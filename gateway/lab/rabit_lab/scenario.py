@@ -24,6 +24,7 @@ class Node:
     image: str
     env: dict
     start: float  # seconds; none: an event starts it
+    plain: bool  # no Rabit node: others do not see it, and it records nothing
     line: int
 
 
@@ -107,7 +108,12 @@ class Scenario:
         return [network for network in self.networks.values() if node in network.members]
 
     def share_network(self, one, other):
-        return any(one in network.members and other in network.members for network in self.networks.values())
+        """True if they can hear each other on some network, as the scenario has it."""
+        if self.nodes[one].plain or self.nodes[other].plain:
+            return False
+        return any(one in network.members and other in network.members
+                   and not any(one in pair and other in pair for pair in network.hidden)
+                   for network in self.networks.values())
 
 
 class Reader:
@@ -197,7 +203,7 @@ class Reader:
         for key, value in section.items():
             line = section.line_of(key)
             value = self.map(value, line, f"node {key}")
-            self.keys(value, ("count", "command", "image", "env", "start"), f"node {key}")
+            self.keys(value, ("count", "command", "image", "env", "start", "plain"), f"node {key}")
             count = self.get(value, "count", units.number, None)
             if ("*" in key) != (count is not None):
                 self.fail(line, f"node {key}: `*` in the name and `count` go together: uav*: {{count: 4, ...}}")
@@ -232,7 +238,8 @@ class Reader:
             words[0] = found
         env = self.map(value.get("env", marked.Map()), value.line_of("env"), "env")
         start = None if value.get("start") == "never" else self.get(value, "start", units.length, 0.0)
-        return Node(name, words, image, {key: str(env[key]).replace("{node}", name) for key in env}, start, line)
+        return Node(name, words, image, {key: str(env[key]).replace("{node}", name) for key in env}, start,
+                    self.flag(value, "plain"), line)
 
     def _read_networks(self, top):
         if "network" not in top:

@@ -1,0 +1,276 @@
+#!/usr/bin/env python3
+"""The parts of the lab that decide: scenarios with mistakes, expectations on flights that are made up, loss by distance, and
+the files that a run leaves."""
+
+import pathlib
+import sys
+import tempfile
+import unittest
+from xml.etree import ElementTree
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "gateway" / "lab"))
+# pylint: disable=wrong-import-position
+from rabit_lab import flight as flights  # noqa: E402
+from rabit_lab import junit, main, new, places, plots, report, scenario, units  # noqa: E402
+from rabit_lab.marked import ScenarioError  # noqa: E402
+
+FLEET = """nodes:
+  uav*: {count: 2, command: [sh, "{node}"]}
+  ground: {command: [sh]}
+"""
+
+
+class InFolder(unittest.TestCase):
+    """Each test has a folder of its own."""
+
+    def setUp(self):
+        # pylint: disable=consider-using-with
+        self._made = tempfile.TemporaryDirectory()
+        self.addCleanup(self._made.cleanup)
+        self.folder = pathlib.Path(self._made.name)
+
+    def read(self, more="", fleet=FLEET):
+        path = self.folder / "s.yaml"
+        path.write_text(fleet + more, encoding="utf-8")
+        return scenario.read(path)
+
+    def refused(self, line, words, more="", fleet=FLEET):
+        with self.assertRaises(ScenarioError) as caught:
+            self.read(more, fleet)
+        self.assertTrue(str(caught.exception).startswith(f"{self.folder / 's.yaml'}:{line}: "), str(caught.exception))
+        self.assertIn(words, str(caught.exception))
+
+
+class ScenarioTest(InFolder):
+    def test_a_pattern_with_a_count_is_so_many_nodes(self):
+        read = self.read()
+        self.assertEqual(list(read.nodes), ["uav1", "uav2", "ground"])
+        self.assertEqual(read.nodes["uav2"].command[1], "uav2")
+        self.assertEqual(read.networks["lan"].members, ["uav1", "uav2", "ground"])
+
+    def test_units_of_a_network_are_read(self):
+        radio = self.read("network:\n  radio: {rate: 250kbit/s, loss: 10%, burst: 4, delay: 20ms, queue: 16kB}\n").networks["radio"]
+        self.assertEqual((radio.rate, radio.loss, radio.burst, radio.delay, radio.queue), (250000, 10, 4, 0.02, 16000))
+
+    def test_a_mistake_is_named_with_its_line(self):
+        cases = [
+            (4, "did you mean `network`", "netwrk: {}\n"),
+            (5, "did you mean `loss`", "network:\n  radio: {los: 10%}\n"),
+            (5, "a share such as 10%", "network:\n  radio: {loss: 10}\n"),
+            (5, "is no name of a network", "network:\n  Radio Link: {}\n"),
+            (4, "ground is in no network", "network:\n  radio: {members: \"uav*\"}\n"),
+            (5, "there is no node `uav3`", "events:\n  - {at: 1s, kill: uav3}\n"),
+            (5, "did you mean `kill`", "events:\n  - {at: 1s, kil: uav2}\n"),
+            (5, "an event has `at`", "events:\n  - {kill: uav2}\n"),
+            (5, "the run ends at 30 s", "events:\n  - {at: 40s, kill: uav2}\n"),
+            (5, "the event kill has no `for`", "events:\n  - {at: 1s, kill: uav2, for: 3s}\n"),
+            (5, "step", "events:\n  - {at: 1s, clock: {node: uav1}}\n"),
+            (5, "is no queue", "events:\n  - {at: 1s, send: uav1, type: A}\n"),
+            (5, "delivered within 2s", "events:\n  - {at: 1s, send: uav1/Q, type: A, expect: quickly}\n"),
+            (5, "is no expectation", "expect:\n  - all up\n"),
+            (5, "there is no node `uav9`", "expect:\n  - uav9 up within 1s\n"),
+            (5, "the run ends at 30 s", "expect:\n  - uav1 up within 1s after 30s\n"),
+            (5, "age p90 < 0.5s", "expect:\n  - \"uav1/Pose at ground: speed > 3\"\n"),
+            (5, "there is no file", "network:\n  radio: {range: {from: track.csv, metres: 800}}\n"),
+        ]
+        for line, words, more in cases:
+            with self.subTest(more):
+                self.refused(line, words, more)
+
+    def test_a_program_that_is_not_there_is_named_before_anything_starts(self):
+        self.refused(2, "no program `./build/uav`", fleet="nodes:\n  uav: {command: [./build/uav]}\n")
+
+    def test_a_key_that_is_there_twice_is_refused(self):
+        self.refused(3, "is there twice", fleet="nodes:\n  a: {command: [sh]}\n  a: {command: [sh]}\n")
+
+    def test_what_is_no_yaml_is_named_with_its_line(self):
+        self.refused(2, "is no YAML", fleet="nodes: [\n")
+
+    def test_the_command_line_ends_with_2_for_a_mistake(self):
+        self.assertEqual(main.main(["run", str(self.folder / "none.yaml"), "--check"]), 2)
+
+
+class Made:
+    """A flight of three nodes that is made up."""
+
+    def __init__(self, read, end=30.0):
+        self.flight = flights.Flight(read)
+        self.flight.end = end
+        for node in read.nodes:
+            self.life(node, 0.0)
+
+    def life(self, node, began):
+        life = flights.Life(node, len(self.flight.lives_of(node)) + 1, began, recorded=True,
+                            incarnation=f"{node}{began}")
+        self.flight.lives.append(life)
+        return life
+
+    def index(self, node):
+        return next(i for i, life in enumerate(self.flight.lives) if life.node == node)
+
+    def sees(self, observer, node, time, state, incarnation=None):
+        peer = flights.PeerState(state, incarnation or f"{node}0.0", "silent")
+        self.flight.peers[self.index(observer), node].put(time, peer)
+
+    def all_up(self, time):
+        for one in self.flight.scenario.nodes:
+            for other in self.flight.scenario.nodes:
+                if one != other:
+                    self.sees(one, other, time, "UP")
+        return self
+
+
+class ExpectationTest(InFolder):
+    def judge(self, text, make):
+        read = self.read(f"expect:\n  - \"{text}\"\n")
+        made = Made(read)
+        make(made)
+        return read.expects[0].verdict(made.flight)
+
+    def test_all_up_fails_for_a_node_that_is_seen_late_or_never(self):
+        self.assertTrue(self.judge("all up within 3s", lambda made: made.all_up(2)).good)
+        self.assertIn("after 4.0 s", self.judge("all up within 3s", lambda made: made.all_up(4)).detail)
+        self.assertIn("never", self.judge("all up within 3s", lambda made: None).detail)
+
+    def test_up_again_means_the_new_incarnation(self):
+        def back(incarnation):
+            def make(made):
+                made.all_up(1)
+                life = made.flight.lives_of("uav2")[0]
+                life.ended, life.by = 10.0, "kill"
+                made.life("uav2", 15.0)
+                for node in ("uav1", "ground"):
+                    made.sees(node, "uav2", 15.5, "UP", incarnation)
+            return make
+        self.assertTrue(self.judge("uav2 up within 1s after 15s", back("uav215.0")).good)
+        self.assertFalse(self.judge("uav2 up within 1s after 15s", back("uav20.0")).good)
+
+    def test_lost_is_false_only_without_a_fault(self):
+        def lost(made):
+            made.all_up(1)
+            made.sees("ground", "uav1", 12.0, "LOST")
+
+        def cut(made):
+            lost(made)
+            made.flight.faults.append(flights.Fault(8, 20, "cut", ["uav1"], "cut uav1"))
+
+        def cut_long_before(made):
+            lost(made)
+            made.flight.faults.append(flights.Fault(1, 3, "cut", ["uav1"], "cut uav1"))
+
+        def killed(made):
+            lost(made)
+            made.flight.lives_of("uav1")[0].ended = 8.5
+        self.assertIn("ground lost uav1 at 12.0 s", self.judge("no false lost", lost).detail)
+        self.assertFalse(self.judge("no false lost", cut_long_before).good)
+        self.assertTrue(self.judge("no false lost", cut).good)
+        self.assertTrue(self.judge("no false lost", killed).good)
+
+    def test_ages_grow_while_nothing_comes_and_name_the_fault(self):
+        def stopping(made):
+            made.flight.values[made.index("ground"), "uav1", "Pose"] = [(t / 10, t / 10 - 0.01) for t in range(1, 100)]
+            made.flight.faults.append(flights.Fault(10, 30, "cut", ["uav1"], "cut uav1"))
+        self.assertTrue(self.judge("uav1/Pose at ground: age p90 < 0.2s, before 9s", stopping).good)
+        verdict = self.judge("uav1/Pose at ground: age p90 < 0.5s", stopping)
+        self.assertFalse(verdict.good)
+        self.assertIn("oldest 20.11 s at 30.0 s; `cut uav1` was at 10 s", verdict.detail)
+        self.assertFalse(self.judge("uav1/Pose at ground: rate > 8/s", stopping).good)
+        self.assertTrue(self.judge("uav1/Pose at ground: rate > 8/s, before 9s", stopping).good)
+
+    def test_a_node_that_records_nothing_fails_what_it_was_to_see(self):
+        def silent(made):
+            made.flight.lives_of("ground")[0].recorded = False
+        self.assertIn("wrote no recording", self.judge("uav1/Pose at ground: age p90 < 1s", silent).detail)
+
+    def test_an_end_by_itself_and_a_wrong_exit_code_are_told(self):
+        def ended(made):
+            for node, code in (("uav1", 0), ("uav2", 0), ("ground", 3)):
+                life = made.flight.lives_of(node)[0]
+                life.ended, life.by, life.code = 30.0, "end", code
+        self.assertIn("ground ended with 3", self.judge("exit codes: 0", ended).detail)
+
+    def test_words_of_a_node_are_found_in_their_time(self):
+        def said(made):
+            made.flight.output.append((12.0, "ground", "Mission complete"))
+        self.assertTrue(self.judge("ground says mission complete within 5s after 10s", said).good)
+        self.assertFalse(self.judge("ground says mission complete within 1s after 10s", said).good)
+
+
+class AgeTest(unittest.TestCase):
+    def test_the_share_of_time_counts_not_that_of_values(self):
+        pieces = [(0.0, 9.0, 0.0), (9.0, 10.0, 0.0)]  # a value each 0 s and 9 s: from 0 to 9, and from 0 to 1
+        self.assertAlmostEqual(flights.age_below(pieces, 1.0), 9.0, 3)
+        self.assertAlmostEqual(flights.age_below(pieces, 0.2), 1.0, 3)
+
+    def test_times_without_the_observer_are_left_out(self):
+        self.assertEqual(flights.without([(2, 3), (5, 20)], 0, 10), [(0, 2), (3, 5)])
+
+
+class PlacesTest(InFolder):
+    RANGE = scenario.Range("Pose", 800.0, "free-space", [], {"ground": [47.0, 8.0, 0.0]}, 1)
+
+    def test_half_is_lost_at_the_distance_that_is_named(self):
+        self.assertAlmostEqual(places.loss_at(800, self.RANGE), 50)
+        self.assertLess(places.loss_at(400, self.RANGE), 1.1)
+        self.assertGreater(places.loss_at(1600, self.RANGE), 98.9)
+
+    def test_a_position_changes_the_loss_of_both_directions_once(self):
+        place = places.Places(scenario.Network("radio", ["uav1", "ground"], range=self.RANGE), self.folder)
+        place.take("uav1", {"latitude_deg": 47.0, "longitude_deg": 8.02, "altitude_m": 0.0})  # 1517 m
+        changed = {(one, other) for one, other, percent, _ in place.changes(0.0) if percent > 98}
+        self.assertEqual(changed, {("uav1", "ground"), ("ground", "uav1")})
+        self.assertEqual(place.changes(0.5), [])
+
+    def test_a_track_is_followed_between_its_points(self):
+        (self.folder / "track.csv").write_text("time_s,node,x,y,z\n0,uav1,0,0,0\n10,uav1,100,0,0\n", encoding="utf-8")
+        self.assertEqual(places.Track(self.folder / "track.csv").at(5), {"uav1": (50, 0, 0)})
+        (self.folder / "track.csv").write_text("time_s,node,x,y,z\n0,uav1,0,0,there\n", encoding="utf-8")
+        with self.assertRaisesRegex(ValueError, "track.csv:2"):
+            places.Track(self.folder / "track.csv")
+
+
+class ResultsTest(InFolder):
+    def test_report_and_junit_show_a_failure_and_escape_what_nodes_say(self):
+        read = self.read("expect:\n  - all up within 3s\n")
+        made = Made(read)
+        made.flight.output.append((1.0, "uav1", "<script>alert(1)</script>\x01"))
+        verdicts = [expect.verdict(made.flight) for expect in read.expects]
+        (self.folder / "scenario.yaml").write_text("x", encoding="utf-8")
+        junit.write(read, verdicts, made.flight, False, self.folder / "junit.xml")
+        report.write(read, made.flight, verdicts, False, "", self.folder)
+        suite = ElementTree.parse(self.folder / "junit.xml").getroot()
+        self.assertEqual(suite.get("failures"), "1")
+        self.assertIn("uav1 saw uav2 UP never", suite.find("testcase/failure").get("message"))
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn("not met", text)
+        self.assertNotIn("<script>alert", text)
+
+    def test_the_worst_state_that_any_node_saw_is_shown(self):
+        made = Made(self.read()).all_up(1)
+        made.sees("ground", "uav1", 10, "LOST")
+        made.sees("ground", "uav1", 12, "UP")
+        self.assertEqual(plots.worst_states(made.flight, "uav1"),
+                         [(0.0, 1, ""), (1, 10, "UP"), (10, 12, "LOST"), (12, 30.0, "UP")])
+
+    def test_a_new_scenario_names_the_nodes_of_a_folder_and_is_right(self):
+        (self.folder / "station").write_text("", encoding="utf-8")
+        (self.folder / "station").chmod(0o755)
+        (self.folder / "station.yaml").write_text("node: station\npublish:\n  - {message: Wind, type: W}\n", encoding="utf-8")
+        (self.folder / "sh").symlink_to("/bin/sh")
+        (self.folder / "sh.yaml").write_text("node: show\nsubscribe:\n  - {message: Wind, type: W}\n", encoding="utf-8")
+        new.write(self.folder, None)
+        read = scenario.read(self.folder / "scenario.yaml")
+        self.assertEqual(sorted(read.nodes), ["show", "station"])
+        self.assertIn("station/Wind at show: age p90 < 2s, before 20s", [expect.text for expect in read.expects])
+
+
+class UnitsTest(unittest.TestCase):
+    def test_quantities_without_their_unit_are_refused(self):
+        self.assertEqual(units.seconds("-10min"), -600)
+        for unit, text in ((units.bits_per_second, "250"), (units.percent, "10"), (units.length, "-3s"), (units.size, "4 apples")):
+            with self.assertRaises(ValueError):
+                unit(text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,221 @@
+#!/usr/bin/env python3
+"""Whole runs of the lab: each fault is seen to come and to go, and a scenario that must fail fails, with the reason.
+
+Usage: lab_test.py RABIT UAV
+Exit code 77: this machine allows no namespaces or devices for them."""
+
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from xml.etree import ElementTree
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+SKIPPED = 77
+IMPOSSIBLE = 3
+LIMIT_S = 150  # only keeps a broken run from hanging the test
+
+NODES = """nodes:
+  uav*: {count: COUNT, command: [UAV, --config, CONFIG, --node, "{node}"]}
+"""
+
+LAN = """  writer: {command: [sh, -c, "while :; do if echo full > {disk}/file; then echo written; else echo no room; fi; sleep 0.5; done"], plain: true}
+run: 21s
+events:
+  - {at: 5s, kill: uav2}
+  - {at: 5s, freeze: uav3, for: 5s}
+  - {at: 6s, disk: {node: writer, full: true}, for: 5s}
+  - {at: 10s, start: uav2}
+  - {at: 13s, clock: {node: uav1, step: -10min}}
+  - {at: 14s, cut: [uav1], for: 5s}
+  - {at: 8s, send: uav1/MissionControl, type: "Uav::GoHome", value: {reason: low battery}, from: uav4, expect: delivered within 3s}
+expect:
+  - all up within 4s
+  - uav2 lost within 5s after 5s
+  - uav2 up within 4s after 10s
+  - uav3 lost within 5s after 5s
+  - uav3 up within 3s after 10s
+  - uav1 lost within 5s after 14s
+  - uav1 up within 2s after 19s
+  - "uav4/Pose at uav1: age p90 < 0.5s, after 2s, before 14s"
+  - writer says written within 4s after 1s
+  - writer says no room within 4s after 7s
+  - writer says written within 4s after 11s
+  - no false lost
+"""
+
+# uav1 and uav2 are hidden from each other, the way from uav3 to uav1 fails for a while, and uav4 flies away and comes back.
+RADIO = """network:
+  radio:
+    rate: 2Mbit/s
+    loss: 5%
+    burst: 4
+    delay: 10ms
+    jitter: 2ms
+    capture: true
+    hidden: [[uav1, uav2]]
+    links: [{from: uav2, to: uav3, loss: 40%, delay: 50ms}]
+    range: {from: track.csv, metres: 500}
+run: 22s
+events:
+  - {at: 5s, loss: 100%, from: uav3, to: uav1, for: 5s}
+  - {at: 19s, outage: radio, for: 1s}
+expect:
+  - all up within 6s
+  - uav3 lost within 6s after 5s at uav1
+  - uav3 up within 4s after 10s at uav1
+  - uav4 lost within 6s after 8s
+  - uav4 up within 4s after 16s
+  - "radio: used < 50%"
+  - no false lost
+"""
+TRACK = """time_s,node,x,y,z
+0,uav1,0,0,0
+0,uav2,50,0,0
+0,uav3,0,50,0
+0,uav4,0,0,50
+7,uav4,0,0,50
+8,uav4,5000,0,50
+15,uav4,5000,0,50
+16,uav4,0,0,50
+"""
+
+FAILING = """  quitter: {command: [sh, -c, "sleep 3; echo out of fuel; exit 5"], plain: true}
+run: 14s
+events:
+  - {at: 3s, kill: uav2}
+  - {at: 6s, send: uav2/MissionControl, type: "Uav::GoHome", from: uav1, expect: delivered within 2s}
+expect:
+  - all up within 0.001s
+  - uav2 up within 2s after 8s
+  - "uav2/Pose at uav1: age p90 < 0.5s"
+  - uav1 says nothing of the kind
+"""
+REASONS = [
+    ("no node ends by itself", "quitter ended by itself with 5"),
+    ("no node ends by itself", "out of fuel"),
+    ("all up within 0.001s", "UP after"),
+    ("uav2 up within 2s after 8s", "uav1 had uav2 LOST"),
+    ("uav2/Pose at uav1", "`kill uav2` was at 3 s"),
+    ("uav1 says", "uav1 did not"),
+    ("Uav::GoHome to uav2/MissionControl", "no outcome"),
+]
+
+
+class Case:
+    """One run in a folder of its own."""
+
+    def __init__(self, folder, name, scenario, count, rabit, uav):
+        self.folder = folder / name
+        self.folder.mkdir()
+        text = NODES + scenario
+        for word, value in (("COUNT", count), ("UAV", uav), ("CONFIG", ROOT / "examples" / "swarm" / "uav.yaml")):
+            text = text.replace(word, str(value))
+        (self.folder / f"{name}.yaml").write_text(text, encoding="utf-8")
+        (self.folder / "track.csv").write_text(TRACK, encoding="utf-8")
+        self.argv = [rabit, "lab", "run", f"{name}.yaml", "--to", "results"]
+        self.results = self.folder / "results"
+        self.code, self.said = None, ""
+
+    def run(self):
+        done = subprocess.run(self.argv, cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              timeout=LIMIT_S, check=False)
+        self.code, self.said = done.returncode, done.stdout
+
+    def verdicts(self):
+        """{expectation: reason of its failure, or none}"""
+        suite = ElementTree.parse(self.results / "junit.xml").getroot()
+        return {case.get("name"): (case.find("failure").get("message") if case.find("failure") is not None else None)
+                for case in suite.iter("testcase")}
+
+
+def check(holds, case, what):
+    if not holds:
+        print(case.said)
+        sys.exit(f"{case.folder.name}: {what}")
+
+
+def check_passed(case):
+    check(case.code == 0, case, f"ended with {case.code}, not 0")
+    for name in ("report.html", "junit.xml", "log.txt", "radio.json", "flight.mcap", "plots/states.svg", "logs/uav1.log"):
+        check((case.results / name).stat().st_size > 0, case, f"no {name}")
+    print(f"ok: {case.folder.name}: all {len(case.verdicts())} expectations met")
+
+
+def check_failed(case):
+    check(case.code == 1, case, f"ended with {case.code}, not 1")
+    for name, reason in REASONS:
+        found = [text for verdict, text in case.verdicts().items() if verdict.startswith(name)]
+        check(len(found) == 1 and found[0] and reason in found[0], case, f"`{name}` does not fail by `{reason}`: {found}")
+    print(f"ok: {case.folder.name}: each fails for its reason")
+
+
+def check_radio(case):
+    check_passed(case)
+    check((case.results / "radio.pcap").stat().st_size > 1000, case, "no capture")
+    text = (case.results / "radio.json").read_text(encoding="utf-8")
+    check('"collided"' in text, case, "no count of collisions")
+
+
+def interrupted(case, number):
+    """Nothing is left of a run that is ended: by SIGTERM with a report, by SIGKILL without."""
+    with subprocess.Popen(case.argv, cwd=case.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as lab:
+        log = case.results / "logs"
+        end = time.monotonic() + 60
+        while not log.exists():
+            assert time.monotonic() < end and lab.poll() is None, "the run does not begin"
+            time.sleep(0.1)
+        lab.send_signal(number)
+        lab.wait(60)
+    end = time.monotonic() + 20
+    while any_uses(str(case.results)):
+        assert time.monotonic() < end, f"processes of the run are left: {any_uses(str(case.results))}"
+        time.sleep(0.1)
+    check((case.results / "report.html").exists() == (number == signal.SIGTERM), case, "a report, or none")
+    check(lab.returncode == (130 if number == signal.SIGTERM else -number), case, f"ended with {lab.returncode}")
+    print(f"ok: {case.folder.name}: nothing is left")
+
+
+def any_uses(text):
+    """The processes that have this text in their environment or command line."""
+    found = []
+    for path in pathlib.Path("/proc").glob("[0-9]*"):
+        try:
+            if text.encode() in (path / "environ").read_bytes() + (path / "cmdline").read_bytes():
+                found.append(path.name)
+        except OSError:
+            pass
+    return found
+
+
+def main():
+    rabit, uav = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
+    folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rbtlab-{os.getpid()}-"))
+    try:
+        lan = Case(folder, "lan", LAN, 4, rabit, uav)
+        radio = Case(folder, "radio", RADIO, 4, rabit, uav)
+        failing = Case(folder, "failing", FAILING, 2, rabit, uav)
+        threads = [threading.Thread(target=case.run) for case in (lan, radio, failing)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        if lan.code == IMPOSSIBLE:
+            print(f"skipped: {lan.said}")
+            sys.exit(SKIPPED)
+        check_passed(lan)
+        check_radio(radio)
+        check_failed(failing)
+        for name, number in (("terminated", signal.SIGTERM), ("killed", signal.SIGKILL)):
+            interrupted(Case(folder, name, LAN, 1, rabit, uav), number)
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+if __name__ == "__main__":
+    main()
