@@ -30,6 +30,8 @@ set(CPACK_COMPONENT_DEV_DESCRIPTION "Headers, static libraries and CMake files o
 set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME rabit-tools)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION devel)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS cyclonedds-tools)
+# Of `rabit lab`.
+set(CPACK_DEBIAN_TOOLS_PACKAGE_RECOMMENDS "python3, python3-yaml, iproute2")
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION "The program rabit, which looks at a fleet, and the generator of messages from IDL, which idlc loads.")
 
 set(CPACK_DEBIAN_GROUND_PACKAGE_NAME rabit-ground-station)

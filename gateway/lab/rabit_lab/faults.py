@@ -5,6 +5,8 @@ import signal
 
 from rabit_lab import flight as flights
 
+LOOK_S = 0.3
+OUTCOME_S = 3  # of a `send` that expects nothing
 JOIN_S = 6  # before a `send` the tool joins the network, so that its outcome is not late by that
 
 
@@ -141,8 +143,12 @@ class Faults:
     # A sender waits for its message on its standard input, so that joining the network takes none of the time that is
     # measured.
     def _join(self, event):
-        values = event.values
-        domain = self._flight.about.get(values["from"], {}).get("domain", "0")
+        values, now = event.values, self._nodes.now()
+        about = self._flight.about.get(values["from"])
+        if about is None and now < event.at - LOOK_S:  # the node has not told its domain yet
+            self._due.append((now + LOOK_S, lambda: self._join(event)))
+            return
+        domain = about["domain"] if about else "0"
         argv = ["send", values["to"], values["type"], "-", "--json", "--wait", "20", "--domain", str(domain),
                 *values["options"]]
         sent = self._flight.sent[id(event)] = flights.Sent("", 0.0, "")
@@ -167,5 +173,8 @@ class Faults:
             pass  # it has ended, and said why
 
     def waits(self):
-        """True while a `send` has no outcome yet."""
-        return any(process.running() for process, _ in self._senders.values())
+        """True while a `send` has no outcome yet, and may still get the one that is expected."""
+        now = self._nodes.now()
+        return any(event.verb == "send" and id(event) in self._senders and self._senders[id(event)][0].running()
+                   and now < event.at + (event.values["expect"] or ("", OUTCOME_S))[1] + 0.5
+                   for event in self._scenario.events)

@@ -117,7 +117,8 @@ class Flight:
 
     def last_fault(self, time, *nodes):
         """The fault of these nodes that began last before a time, or none."""
-        before = [fault for fault in self.faults if fault.began <= time and fault.concerns(*nodes)]
+        before = [fault for fault in self.faults
+                  if fault.began <= time and fault.verb != "send" and fault.concerns(*nodes)]
         return max(before, key=lambda fault: fault.began, default=None)
 
     def disturbed(self, begin, end, *nodes):

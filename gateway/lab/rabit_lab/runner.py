@@ -16,7 +16,6 @@ TICK_S = 0.05
 COUNT_EACH_S = 1.0
 PLACES_EACH_S = 0.5
 SETTLE_S = 1.0  # a node that ends in this time has not started
-OUTCOME_S = 12  # for the outcomes of messages after the end
 
 
 class Runner:
@@ -116,8 +115,7 @@ class Runner:
 
     def _end(self, pauses):
         self.flight.end = self.now()
-        end = time.monotonic() + OUTCOME_S
-        while self._faults.waits() and time.monotonic() < end and not self._interrupted.is_set():
+        while self._faults.waits() and not self._interrupted.is_set():
             time.sleep(TICK_S)
         self.say("the nodes are told to end")
         self._nodes.stop(list(self.scenario.nodes), "end")
@@ -157,6 +155,9 @@ class Runner:
         (self.folder / "radio.json").write_text(json.dumps(
             {name: {"counters": counts[-1][1], "kinds": self.flight.census.get(name), "lateness": self.flight.lateness.get(name)}
              for name, counts in self.flight.radio.items()}, indent=1), encoding="utf-8")
+        (self.folder / "verdicts.txt").write_text("".join(
+            "\t".join(("met" if verdict.good else "not met", verdict.text, verdict.detail)).replace("\n", " ") + "\n"
+            for verdict in verdicts), encoding="utf-8")
         timeline.write(self.flight, self.folder / "log.txt")
         junit.write(self.scenario, verdicts, self.flight, interrupted, self.folder / "junit.xml")
         report.write(self.scenario, self.flight, verdicts, interrupted, merged, self.folder)

@@ -24,7 +24,7 @@ NODES = """nodes:
   uav*: {count: COUNT, command: [UAV, --config, CONFIG, --node, "{node}"]}
 """
 
-LAN = """  writer: {command: [sh, -c, "while :; do if echo full > {disk}/file; then echo written; else echo no room; fi; sleep 0.5; done"], plain: true}
+LAN = """  writer: {command: [sh, -c, "while :; do if head -c 9000 /dev/zero >> {disk}/file; then echo written; else echo no room; fi; sleep 0.5; done"], plain: true}
 run: 21s
 events:
   - {at: 5s, kill: uav2}
@@ -212,7 +212,7 @@ def main():
         check_radio(radio)
         check_failed(failing)
         for name, number in (("terminated", signal.SIGTERM), ("killed", signal.SIGKILL)):
-            interrupted(Case(folder, name, LAN, 1, rabit, uav), number)
+            interrupted(Case(folder, name, LAN, 4, rabit, uav), number)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
