@@ -6,12 +6,12 @@ import pathlib
 import subprocess
 import sys
 import threading
-import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "gateway" / "lab"))
 # pylint: disable=wrong-import-position,unused-import
-from rabit_lab.processes import Pauses, Process, Processes, die_with_parent, full_pipe  # noqa: E402,F401
+from rabit_lab.processes import Pauses, Process, Processes, die_with_parent, full_pipe, until  # noqa: E402,F401
+
 IN_NAMESPACE = "RABIT_TEST_IN_NAMESPACE"
 
 
@@ -41,16 +41,6 @@ def enter_namespace():
 def domain():
     """A DDS domain: the first one in a namespace, one that depends on the process elsewhere."""
     return 0 if os.environ.get(IN_NAMESPACE) == "yes" else 100 + os.getpid() % 100
-
-
-def until(holds, limit_s=120):
-    """What `holds` returns once it is true. The limit only keeps a broken program from hanging."""
-    end = time.monotonic() + limit_s
-    while True:
-        result = holds()
-        if result:
-            return result
-        assert time.monotonic() < end, f"{holds.__name__} did not come true"
 
 
 def reason(error):

@@ -5,7 +5,7 @@ import datetime
 import pathlib
 import sys
 
-from rabit_lab import cage, new, runner, scenario as scenarios, tools
+from rabit_lab import cage, containers, network, new, runner, scenario as scenarios, tools
 from rabit_lab.marked import ScenarioError
 from rabit_lab.radio import Unsupported
 
@@ -29,14 +29,20 @@ def run(options):
         print(f"{options.scenario}: {len(scenario.nodes)} nodes, {len(scenario.networks)} networks, {len(scenario.events)} "
               f"events, {len(scenario.expects)} expectations, {scenario.run:g} s")
         return GOOD
+    bare = [node for node in scenario.nodes.values() if not node.image]
+    if options.docker and bare:
+        raise ScenarioError(f"{options.scenario}:{bare[0].line}", f"node {bare[0].name} has no `image`, which --docker needs")
+    has_images = len(bare) < len(scenario.nodes)
     found = tools.find()
     folder = folder_for(scenario, options.to)
-    return cage.run(lambda: fly(scenario, folder, found))
+    return cage.run(lambda: fly(scenario, folder, found, has_images), own_processes=not has_images)
 
 
-def fly(scenario, folder, found):
+def fly(scenario, folder, found, has_images):
     """In the cage. Returns the exit code."""
-    verdicts = runner.Runner(scenario, folder, found).run()
+    folders = [folder, scenario.folder, pathlib.Path(found.stepped_clock).parent]
+    spaces = containers.Containers(scenario, sorted(set(map(str, folders)))) if has_images else network.Spaces()
+    verdicts = runner.Runner(scenario, folder, found, spaces).run()
     if verdicts is None:
         print(f"interrupted; {folder}/report.html has what was seen")
         return INTERRUPTED
@@ -62,6 +68,7 @@ def parse(arguments):
     command.add_argument("scenario", metavar="SCENARIO", help="a file of YAML")
     command.add_argument("--to", metavar="FOLDER", help="folder of the results; default: lab/NAME_TIME")
     command.add_argument("--check", action="store_true", help="only check the scenario; nothing starts")
+    command.add_argument("--docker", action="store_true", help="each node in a container; each needs an `image`")
     command.set_defaults(act=run)
     command = commands.add_parser("new", help="write a scenario for the configurations of a folder")
     command.add_argument("folder", metavar="FOLDER")

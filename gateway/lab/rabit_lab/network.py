@@ -31,8 +31,15 @@ class Spaces:
         """The command that runs another one there."""
         return ["ip", "netns", "exec", node, *argv]
 
+    def start(self, node, argv, environment):
+        """The command of a node, and its environment."""
+        return self.inside(node, argv), environment
+
     def ip(self, node, *argv):
         run("ip", "-n", node, *argv)
+
+    def end(self):
+        """Nothing is left to do: the cage ends them."""
 
 
 class Networks:

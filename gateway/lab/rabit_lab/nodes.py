@@ -78,7 +78,7 @@ class Nodes:
         index = len(self._flight.lives) - 1
         argv = [word.replace("{disk}", str(self.disk(name))).replace("{address}", self._nets.addresses(name)[0])
                 for word in node.command]
-        argv = self._nets.spaces.inside(name, argv)
+        argv, env = self._nets.spaces.start(name, argv, env)
         process = processes.Process(argv, env, on_line=lambda text: self._line(index, text), cwd=self._scenario.folder,
                                     start_new_session=True)
         self._running[name] = (index, process)

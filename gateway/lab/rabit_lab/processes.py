@@ -41,6 +41,17 @@ class Pauses:
         return self.seen
 
 
+def until(holds, limit_s=120):
+    """What `holds` returns once it is true. The limit only keeps a broken program from hanging its user."""
+    end = time.monotonic() + limit_s
+    while True:
+        result = holds()
+        if result:
+            return result
+        assert time.monotonic() < end, f"{holds.__name__} did not come true within {limit_s} s"
+        time.sleep(0.05)
+
+
 def full_pipe():
     """Both ends of a pipe that takes nothing more."""
     reading, writing = os.pipe()

@@ -131,6 +131,7 @@ class Runner:
             self.flight.lateness[name] = channel.tell("lateness")
             self.flight.census[name] = channel.tell("kinds")
             channel.kill()
+        self._spaces.end()
         self.flight.pauses = [(a - self._began, b - self._began) for a, b in pauses.end()]
         self._note()
 
