@@ -5,7 +5,7 @@ between them, and prints for each stretch of time bytes, datagrams and their mea
 Usage: census.py [--nodes N] [--seconds S] [--until S,S,...] [--transport NAME] PROGRAM [ARGUMENT...]
        census.py --pcap FILE
 PROGRAM is ledger_node, or one that needs no more than the ARGUMENTs; in them {node} stands for the node's name. --until:
-where the stretches end. FILE is what tests/integration/radio records. Needs root; exit code 77: this machine does not allow
+where the stretches end. FILE is what gateway/lab/radio records. Needs root; exit code 77: this machine does not allow
 it.
 
 A line says how many destinations (one, all), what RTPS has in it, and whose: SPDP participants, SEDP endpoints, user the
