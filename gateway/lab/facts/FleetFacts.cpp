@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace Rabit::Lab
+namespace Rabit::Facts
 {
 namespace
 {
@@ -81,4 +81,4 @@ std::vector<FleetFacts::Json> FleetFacts::Look(std::span<const std::uint8_t> sam
     return facts;
 }
 
-}  // namespace Rabit::Lab
+}  // namespace Rabit::Facts

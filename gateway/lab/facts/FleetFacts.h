@@ -11,7 +11,7 @@
 
 #include "gateway.idl.h"
 
-namespace Rabit::Lab
+namespace Rabit::Facts
 {
 
 // The changes from one `Gateway/Fleet` of a node to its next. The message comes once a second and tells of
@@ -42,4 +42,4 @@ private:
     std::vector<Problem> _problems;  // in order
 };
 
-}  // namespace Rabit::Lab
+}  // namespace Rabit::Facts

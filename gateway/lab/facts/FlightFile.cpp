@@ -9,7 +9,7 @@
 #include "recording/mcap/RecordCodec.h"
 #include "recording/mcap/RecordScanner.h"
 
-namespace Rabit::Lab
+namespace Rabit::Facts
 {
 namespace
 {
@@ -255,4 +255,4 @@ void FlightFile::Put(std::uint64_t time, Json fact)
     (*_tell)(std::move(fact));
 }
 
-}  // namespace Rabit::Lab
+}  // namespace Rabit::Facts

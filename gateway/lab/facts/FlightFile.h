@@ -16,7 +16,7 @@
 #include "FleetFacts.h"
 #include "recording/mcap/McapRecords.h"
 
-namespace Rabit::Lab
+namespace Rabit::Facts
 {
 
 // A recording of one node that may still be growing. No content of the file makes it throw: a damaged file is
@@ -71,4 +71,4 @@ private:
     FleetFacts _fleet;
 };
 
-}  // namespace Rabit::Lab
+}  // namespace Rabit::Facts

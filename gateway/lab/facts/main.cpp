@@ -23,7 +23,7 @@ namespace
 
 constexpr int LookEachMs = 200;
 
-using Files = std::map<std::string, std::unique_ptr<Rabit::Lab::FlightFile>>;
+using Files = std::map<std::string, std::unique_ptr<Rabit::Facts::FlightFile>>;
 
 void FindFiles(const std::string &folder, const std::set<std::string> &fields, Files &files)
 {
@@ -35,7 +35,7 @@ void FindFiles(const std::string &folder, const std::set<std::string> &fields, F
         const std::string path = entry->path().string();
         if (entry->path().extension() == ".mcap" && !files.contains(path))
         {
-            files[path] = std::make_unique<Rabit::Lab::FlightFile>(path, fields);
+            files[path] = std::make_unique<Rabit::Facts::FlightFile>(path, fields);
         }
     }
 }

@@ -9,7 +9,7 @@ import sys
 from rabit_lab import processes
 from rabit_lab.radio import Unsupported
 
-CLONE_NEWNS, CLONE_NEWUSER, CLONE_NEWPID = 0x00020000, 0x10000000, 0x20000000
+CLONE_NEWNS, CLONE_NEWUSER, CLONE_NEWPID, CLONE_NEWNET = 0x00020000, 0x10000000, 0x20000000, 0x40000000
 MS_REC, MS_PRIVATE = 0x4000, 0x40000
 ADVICE = ("run it as root (sudo); or allow namespaces to users: sysctl kernel.unprivileged_userns_clone=1, "
           "kernel.apparmor_restrict_unprivileged_userns=0; in a container: docker run --privileged")
@@ -25,7 +25,8 @@ def mount(source, target, kind, flags=0, data=""):
 
 def _unshare(own_processes):
     user, group = os.geteuid(), os.getegid()
-    flags = CLONE_NEWNS | (CLONE_NEWPID if own_processes else 0) | (CLONE_NEWUSER if user != 0 else 0)
+    # `ip netns` returns to the network that it was started in, which a user may do only if that is the user's, too.
+    flags = CLONE_NEWNS | (CLONE_NEWPID if own_processes else 0) | (CLONE_NEWUSER | CLONE_NEWNET if user != 0 else 0)
     if _libc.unshare(flags) != 0:
         raise Unsupported(f"no namespaces can be made here ({os.strerror(ctypes.get_errno())}); {ADVICE}")
     if user != 0:

@@ -5,7 +5,8 @@ import signal
 
 from rabit_lab import flight as flights
 
-LOOK_S = 0.3
+LOOK_S = 0.3  # between two looks whether a node has told its domain
+SORTS = {"cut": "hearing", "deaf": "hearing"}  # faults that change the same
 OUTCOME_S = 3  # of a `send` that expects nothing
 JOIN_S = 6  # before a `send` the tool joins the network, so that its outcome is not late by that
 
@@ -17,6 +18,7 @@ class Faults:
         self._scenario, self._nets, self._nodes, self._flight = scenario, nets, nodes, flight
         self._places, self._say = places, say
         self._due = []  # (time, what is to be done)
+        self._active = []  # events that last
         self._senders = {}  # event id -> (Process, [time of the message])
         for event in scenario.events:
             self._due.append((event.at, lambda event=event: self._begin(event)))
@@ -49,12 +51,19 @@ class Faults:
                                                  event.text()))
         self._say(event.text())
         getattr(self, "_" + event.verb)(event, True)
+        if not instant:
+            self._active.append(event)
         if event.length is not None:
             self._due.append((until, lambda: self._finish(event)))
 
+    # The end of one fault must not end another one that goes on.
     def _finish(self, event):
         self._say(f"end of: {event.text()}")
+        self._active.remove(event)
         getattr(self, "_" + event.verb)(event, False)
+        for other in self._active:
+            if SORTS.get(other.verb, other.verb) == SORTS.get(event.verb, event.verb):
+                getattr(self, "_" + other.verb)(other, True)
 
     def _networks(self, event):
         wanted = event.values.get("network")

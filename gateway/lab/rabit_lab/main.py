@@ -3,9 +3,10 @@
 import argparse
 import datetime
 import pathlib
+import shutil
 import sys
 
-from rabit_lab import cage, containers, network, new, runner, scenario as scenarios, tools
+from rabit_lab import cage, containers, network, new, runner, scenario as scenarios, table, tools
 from rabit_lab.marked import ScenarioError
 from rabit_lab.radio import Unsupported
 
@@ -35,7 +36,13 @@ def run(options):
     has_images = len(bare) < len(scenario.nodes)
     found = tools.find()
     folder = folder_for(scenario, options.to)
-    return cage.run(lambda: fly(scenario, folder, found, has_images), own_processes=not has_images)
+    code = IMPOSSIBLE
+    try:
+        code = cage.run(lambda: fly(scenario, folder, found, has_images), own_processes=not has_images)
+    finally:
+        if code == IMPOSSIBLE:
+            shutil.rmtree(folder, ignore_errors=True)
+    return code
 
 
 def fly(scenario, folder, found, has_images):
@@ -48,7 +55,8 @@ def fly(scenario, folder, found, has_images):
         return INTERRUPTED
     print()
     for verdict in verdicts:
-        print(f"{'met    ' if verdict.good else 'NOT MET'}  {verdict.text}" + (f": {verdict.detail}" if verdict.detail else ""))
+        print(("met      " if verdict.good else "NOT MET  ")
+              + table.safe(verdict.text + (f": {verdict.detail}" if verdict.detail else "")))
     wrong = [verdict for verdict in verdicts if not verdict.good]
     print(f"\n{'FAILED' if wrong else 'PASSED'}: {len(verdicts) - len(wrong)} of {len(verdicts)} expectations met; "
           f"{folder}/report.html")

@@ -4,6 +4,7 @@ import os
 import subprocess
 
 from rabit_lab import radio
+from rabit_lab.cage import ADVICE
 from rabit_lab.radio import Unsupported
 
 OBSERVER = "observer"
@@ -13,7 +14,7 @@ def run(*argv):
     """A command that works, or Unsupported with what it said."""
     done = subprocess.run(argv, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False)
     if done.returncode != 0:
-        raise Unsupported(f"{' '.join(argv)}: {done.stdout.strip()}")
+        raise Unsupported(f"{' '.join(argv)}: {done.stdout.strip()}; {ADVICE}")
     return done.stdout
 
 

@@ -27,7 +27,9 @@ class Radio:
             _, self.ready = self._process.wait_for(lambda text: text.startswith("{") and json.loads(text), LIMIT_S)
         except AssertionError as error:
             if "/dev/net/tun" in str(error) or "a TAP device" in str(error):
-                raise Unsupported(f"no TAP devices here: {error}") from error
+                said = str(error).splitlines()[-1]
+                raise Unsupported(f"no TAP devices here: {said}; run modprobe tun, and let this user open /dev/net/tun; in a "
+                                  "container: --device /dev/net/tun") from error
             raise
 
     def tell(self, line):

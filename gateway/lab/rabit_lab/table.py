@@ -1,5 +1,6 @@
 """What a person sees while a scenario runs."""
 
+import shutil
 import sys
 
 from rabit_lab import network as networks
@@ -7,6 +8,11 @@ from rabit_lab import network as networks
 EACH_S = 1.0
 PLAIN_EACH_S = 10.0
 MOST_ROWS = 24
+
+
+def safe(text):
+    """Without characters that control a terminal: nodes and the network choose some of the text."""
+    return "".join(c if c.isprintable() else "?" for c in str(text))
 
 
 class Table:
@@ -22,7 +28,7 @@ class Table:
     def say(self, now, text):
         """A line that stays."""
         self._clear()
-        self._out.write(f"{now:7.1f} s  {text}\n")
+        self._out.write(f"{now:7.1f} s  {safe(text)}\n")
         self._out.flush()
 
     def _clear(self):
@@ -34,7 +40,8 @@ class Table:
         if now < self._next:
             return
         self._next = now + (EACH_S if self._live else PLAIN_EACH_S)
-        lines = self.lines(now) if self._live else [f"{now:7.1f} s  {self.summary(now)}"]
+        width = shutil.get_terminal_size().columns
+        lines = [safe(line)[:width] for line in self.lines(now)] if self._live else [f"{now:7.1f} s  {self.summary(now)}"]
         self._clear()
         self._out.write("".join(line + "\n" for line in lines))
         self._out.flush()

@@ -4,6 +4,7 @@
 Usage: lab_test.py RABIT UAV
 Exit code 77: this machine allows no namespaces or devices for them."""
 
+import json
 import os
 import pathlib
 import shutil
@@ -53,24 +54,25 @@ expect:
 RADIO = """network:
   radio:
     rate: 2Mbit/s
-    loss: 5%
-    burst: 4
+    loss: 2%
+    burst: 3
     delay: 10ms
     jitter: 2ms
     capture: true
     hidden: [[uav1, uav2]]
     links: [{from: uav2, to: uav3, loss: 40%, delay: 50ms}]
     range: {from: track.csv, metres: 500}
-run: 22s
+run: 27s
 events:
-  - {at: 5s, loss: 100%, from: uav3, to: uav1, for: 5s}
-  - {at: 19s, outage: radio, for: 1s}
+  - {at: 11s, loss: 100%, from: uav3, to: uav1, for: 5s}
+  - {at: 12s, loss: 10%, for: 1s}
+  - {at: 25s, outage: radio, for: 1s}
 expect:
-  - all up within 6s
-  - uav3 lost within 6s after 5s at uav1
-  - uav3 up within 4s after 10s at uav1
-  - uav4 lost within 6s after 8s
-  - uav4 up within 4s after 16s
+  - all up within 11s
+  - uav3 lost within 6s after 11s at uav1
+  - uav3 up within 4s after 16s at uav1
+  - uav4 lost within 6s after 14s
+  - uav4 up within 4s after 22s
   - "radio: used < 50%"
   - no false lost
 """
@@ -79,10 +81,10 @@ TRACK = """time_s,node,x,y,z
 0,uav2,50,0,0
 0,uav3,0,50,0
 0,uav4,0,0,50
-7,uav4,0,0,50
-8,uav4,5000,0,50
-15,uav4,5000,0,50
-16,uav4,0,0,50
+13,uav4,0,0,50
+14,uav4,5000,0,50
+21,uav4,5000,0,50
+22,uav4,0,0,50
 """
 
 FAILING = """  quitter: {command: [sh, -c, "sleep 3; echo out of fuel; exit 5"], plain: true}
@@ -107,10 +109,20 @@ REASONS = [
 ]
 
 
+SMALL = """run: 5s
+expect:
+  - all up within 4s
+"""
+# A user without root, on a machine where users may open this device, as Debian has it.
+AS_USER = ["unshare", "--mount", "sh", "-c", "mount -t tmpfs none /dev/net && mknod -m 666 /dev/net/tun c 10 200 && exec setpriv "
+           "--reuid=65534 --regid=65534 --clear-groups \"$@\"", "sh"]
+WITHOUT_RIGHTS = ["setpriv", "--bounding-set=-sys_admin"]
+
+
 class Case:
     """One run in a folder of its own."""
 
-    def __init__(self, folder, name, scenario, count, rabit, uav):
+    def __init__(self, folder, name, scenario, count, rabit, uav, before=()):
         self.folder = folder / name
         self.folder.mkdir()
         text = NODES + scenario
@@ -118,7 +130,9 @@ class Case:
             text = text.replace(word, str(value))
         (self.folder / f"{name}.yaml").write_text(text, encoding="utf-8")
         (self.folder / "track.csv").write_text(TRACK, encoding="utf-8")
-        self.argv = [rabit, "lab", "run", f"{name}.yaml", "--to", "results"]
+        if before:
+            os.chown(self.folder, 65534, 65534)
+        self.argv = [*before, rabit, "lab", "run", f"{name}.yaml", "--to", "results"]
         self.results = self.folder / "results"
         self.code, self.said = None, ""
 
@@ -158,8 +172,15 @@ def check_failed(case):
 def check_radio(case):
     check_passed(case)
     check((case.results / "radio.pcap").stat().st_size > 1000, case, "no capture")
-    text = (case.results / "radio.json").read_text(encoding="utf-8")
-    check('"collided"' in text, case, "no count of collisions")
+    nodes = json.loads((case.results / "radio.json").read_text(encoding="utf-8"))["radio"]["counters"]["nodes"]
+    check(sum(node["collided"] for node in nodes.values()) > 0, case, "hidden stations did not collide")
+    check(nodes["uav3"]["lost"] > nodes["uav2"]["lost"], case, "the link that loses more lost no more")
+
+
+def check_impossible(case):
+    check(case.code == IMPOSSIBLE and "run it as root" in case.said and not case.results.exists(), case,
+          f"ended with {case.code}, or without advice")
+    print(f"ok: {case.folder.name}: says what to do")
 
 
 def interrupted(case, number):
@@ -196,11 +217,14 @@ def any_uses(text):
 def main():
     rabit, uav = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rbtlab-{os.getpid()}-"))
+    folder.chmod(0o755)
     try:
         lan = Case(folder, "lan", LAN, 4, rabit, uav)
         radio = Case(folder, "radio", RADIO, 4, rabit, uav)
         failing = Case(folder, "failing", FAILING, 2, rabit, uav)
-        threads = [threading.Thread(target=case.run) for case in (lan, radio, failing)]
+        user = Case(folder, "user", SMALL, 2, rabit, uav, AS_USER)
+        refused = Case(folder, "refused", SMALL, 2, rabit, uav, WITHOUT_RIGHTS)
+        threads = [threading.Thread(target=case.run) for case in (lan, radio, failing, user, refused)]
         for thread in threads:
             thread.start()
         for thread in threads:
@@ -211,6 +235,8 @@ def main():
         check_passed(lan)
         check_radio(radio)
         check_failed(failing)
+        check_passed(user)
+        check_impossible(refused)
         for name, number in (("terminated", signal.SIGTERM), ("killed", signal.SIGKILL)):
             interrupted(Case(folder, name, LAN, 4, rabit, uav), number)
     finally:
