@@ -45,6 +45,7 @@ void AddPingCommand(CLI::App &app, Chosen &chosen);
 void AddTopCommand(CLI::App &app, Chosen &chosen);
 void AddDoctorCommand(CLI::App &app, Chosen &chosen);
 void AddKeysCommand(CLI::App &app, Chosen &chosen);
+void AddLabCommand(CLI::App &app, Chosen &chosen);
 
 // For the shells: writes the candidates for the last word of a line, one a line. The line comes without the
 // program's name. Candidates that depend on the fleet come from the network that the line names. Returns the

@@ -84,7 +84,6 @@ std::vector<std::string> WordsOf(const char *command, const Options &options)
 
 }  // namespace
 
-void AddLabCommand(CLI::App &app, Chosen &chosen);  // TEMPORARY
 void AddLabCommand(CLI::App &app, Chosen &chosen)
 {
     CLI::App *lab = app.add_subcommand("lab", "Flies a fleet of one's own through a scenario with faults");

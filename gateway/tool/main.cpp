@@ -18,10 +18,6 @@
 #include "FleetSession.h"
 #include "Output.h"
 
-namespace Rabit::Tool
-{
-void AddLabCommand(CLI::App &app, Chosen &chosen);  // TEMPORARY
-}
 using namespace Rabit;
 using namespace Rabit::Tool;
 

@@ -16,7 +16,7 @@
 namespace Rabit
 {
 
-// What a scenario expected, and what was seen.
+// One expectation of a scenario, and the observation that decided it.
 struct LabVerdict
 {
     bool IsMet = false;
