@@ -45,13 +45,9 @@ int Become(std::vector<std::string> words)
         return ProblemFound;
     }
     const std::filesystem::path programs = (folder / RABIT_LAB_PROGRAMS).lexically_normal();
-    const char *const before = std::getenv("PYTHONPATH");
-    const std::string path = modules.string() + (before != nullptr ? std::string(":") + before : "");
-    setenv("PYTHONPATH", path.c_str(), 1);
-    setenv("PYTHONDONTWRITEBYTECODE", "1", 1);
     setenv("RABIT_LAB_RABIT", program.c_str(), 1);
     setenv("RABIT_LAB_PROGRAMS", programs.c_str(), 1);
-    words.insert(words.begin(), {"python3", "-m", "rabit_lab"});
+    words.insert(words.begin(), {"python3", "-B", (modules / "rabit_lab").string()});
     std::vector<char *> arguments;
     for (std::string &word : words)
     {

@@ -87,6 +87,7 @@ class Flight:
         self.faults = []
         self.peers = collections.defaultdict(Changes)  # (life index, other node) -> PeerState
         self.values = collections.defaultdict(list)  # (life index, origin, message) -> [(arrived, posted)]
+        self.newest = collections.defaultdict(dict)  # life index -> {(origin, message): when its last value was posted}
         self.problems = []  # [node, subject, other, reason, since, until]
         self.logs = []  # (time, node, level, text): what nodes logged and recorded
         self.output = []  # (time, node, text)
@@ -149,8 +150,9 @@ class Flight:
             state = PeerState(fact["state"], fact["incarnation"], fact["reason"])
             self.peers[life_index, fact["of"]].put(time, state)
         elif kind == "values":
-            pairs = zip(map(to_lab, fact["at"]), map(to_lab, fact["posted"]))
+            pairs = list(zip(map(to_lab, fact["at"]), map(to_lab, fact["posted"])))
             self.values[life_index, fact["node"], fact["message"]].extend(pairs)
+            self.newest[life_index][fact["node"], fact["message"]] = pairs[-1][1]
         elif kind == "problem":
             self.problems.append([life.node, fact["subject"], fact["node"], fact["reason"], time, None])
         elif kind == "solved":

@@ -3,6 +3,8 @@
 import html
 import math
 
+from rabit_lab.flight import oldest
+
 WIDTH, LEFT, RIGHT = 1040, 130, 16
 COLOURS = ("#2a78d6", "#1b9e77", "#c98500", "#d0473f", "#5b4ab0", "#c65d94", "#4d8a1f", "#c8602c")
 STATES = {"UP": "#2f9e44", "STALE": "#f2a900", "LOST": "#d0342c", "": "#d5d9de"}
@@ -117,12 +119,12 @@ def worst_states(flight, node):
     return spans
 
 
-def lines(title, flight, unit, series, note=""):
-    """`series`: {name: [(time, value)]}; those with the largest values are shown."""
+def lines(title, flight, unit, series, among=0):
+    """`series`: {name: [(time, value)]}; those with the largest values are shown, of `among` in all."""
     ranked = sorted(series.items(), key=lambda item: -max((value for _, value in item[1] if value is not None), default=0))
     shown = ranked[:MOST_LINES]
     rows = (len(shown) + 3) // 4
-    picture = Picture(title + note, flight, 220 + 16 * rows)
+    picture = Picture(title, flight, 220 + 16 * rows)
     picture.bottom = 196
     picture.frame()
     top = max((value for _, points in shown for _, value in points if value is not None), default=0) or 1
@@ -146,8 +148,9 @@ def lines(title, flight, unit, series, note=""):
         x, y = LEFT + 225 * (number % 4), picture.height - 16 * rows + 16 * (number // 4) + 6
         picture.parts.append(f'<rect x="{x}" y="{y - 8}" width="14" height="4" fill="{colour}"/>')
         picture.text(x + 20, y - 2, name if len(name) < 32 else name[:30] + "...")
-    if len(ranked) > len(shown):
-        picture.text(WIDTH - RIGHT, 16, f"the {len(shown)} largest of {len(ranked)}", "end")
+    among = max(among, len(ranked))
+    if among > len(shown):
+        picture.text(WIDTH - RIGHT, 16, f"the {len(shown)} largest of {among}", "end")
     return picture.svg()
 
 
@@ -160,10 +163,12 @@ def ages(flight):
             streams.setdefault(message, set()).add((origin, observer))
     result = {}
     for message, pairs in sorted(streams.items()):
+        found = {pair: flight.ages(pair[1], pair[0], message, 0, flight.end) for pair in sorted(pairs)}
+        worst = sorted(found, key=lambda pair: -(oldest(found[pair])[0] or 0))[:MOST_LINES]
         series = {}
-        for origin, observer in sorted(pairs):
+        for origin, observer in worst:
             columns = {}
-            for begin, end, age in flight.ages(observer, origin, message, 0, flight.end):
+            for begin, end, age in found[origin, observer]:
                 first, last = (min(int(COLUMNS * t / flight.end), COLUMNS - 1) for t in (begin, end))
                 for column in range(first, last + 1):
                     until = min(end, (column + 1) * flight.end / COLUMNS)
@@ -171,7 +176,7 @@ def ages(flight):
             # A column without a value, because the observer was not there, breaks the line.
             series[f"{origin} at {observer}"] = [((column + 0.5) * flight.end / COLUMNS, columns.get(column))
                                                  for column in range(COLUMNS)]
-        result[message] = lines(f"Age of {message}", flight, "s", series)
+        result[message] = lines(f"Age of {message}", flight, "s", series, len(found))
     return result
 
 

@@ -196,6 +196,8 @@ class Reader:
         observe = self.text(top, "observe")
         if observe is not None and observe not in self.networks:
             self.fail(top.line_of("observe"), f"there is no network `{observe}`{nearest(observe, self.networks)}")
+        if observe and "observer" in self.nodes:
+            self.fail(top.line_of("observe"), "observe: with it no node can be called `observer`")
         expects = self._read_expectations(top, run, events)
         return Scenario(self.path, self.folder, self.nodes, self.networks, run, events, expects, observe)
 

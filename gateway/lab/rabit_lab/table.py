@@ -97,6 +97,6 @@ class Table:
 
     def _oldest(self, node, life, now):
         index = self._flight.lives.index(life)
-        ages = [(now - values[-1][1], f"{origin}/{message}") for (at, origin, message), values in self._flight.values.items()
-                if at == index and origin != node and values]
+        ages = [(now - posted, f"{origin}/{message}") for (origin, message), posted in self._flight.newest[index].items()
+                if origin != node]
         return "{1} {0:.1f} s".format(*max(ages)) if ages else "-"
