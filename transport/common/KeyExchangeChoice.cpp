@@ -161,6 +161,7 @@ void KeyExchangeOutbox::Take(const Choice &choice, TimePoint now, std::vector<Da
     Peer &peer = _peers.at(choice.Of);
     const auto from = static_cast<std::ptrdiff_t>(taken.size());
     bool waits = true;
+    bool isWhole = false;
     if (choice.Kind)
     {
         Control &control = peer.Controls.at(*choice.Kind);
@@ -169,10 +170,12 @@ void KeyExchangeOutbox::Take(const Choice &choice, TimePoint now, std::vector<Da
                           ? std::min<Duration>(2 * control.Gap, LongControlGapNow())
                           : ControlGapNow();
         control.SaidAt = peer.ControlSaidAt = now;
+        isWhole = control.IsWhole;
         waits = false;
     }
     else if (choice.What == Step::Keys)
     {
+        isWhole = peer.KeysWaiting.front().IsWhole;
         _waiting -= peer.KeysWaiting.front().What.Bytes.size();
         taken.push_back(std::move(peer.KeysWaiting.front().What));
         peer.KeysWaiting.pop_front();
@@ -190,7 +193,14 @@ void KeyExchangeOutbox::Take(const Choice &choice, TimePoint now, std::vector<Da
     }
     std::size_t size = 0;
     std::for_each(taken.begin() + from, taken.end(),
-                  [&size](const Datagram &datagram) { size += datagram.Bytes.size() + Headers; });
+                  [&](Datagram &datagram)
+                  {
+                      if (!isWhole)  // the signature of a whole message covers its end
+                      {
+                          StampFor(choice.Of, now).AppendTo(datagram.Bytes);
+                      }
+                      size += datagram.Bytes.size() + Headers;
+                  });
     peer.ControlAhead += static_cast<double>(size) * (choice.Kind ? -1.0 : ControlShare);
     peer.ControlAhead = std::clamp(peer.ControlAhead, 0.0, MostControlAhead);
     Charge(peer, size, waits, now);
@@ -198,24 +208,36 @@ void KeyExchangeOutbox::Take(const Choice &choice, TimePoint now, std::vector<Da
 
 void KeyExchangeOutbox::TakeMessage(Peer &peer, TimePoint now, std::vector<Datagram> &taken)
 {
-    const bool again = peer.Said == peer.Waiting->What;
-    peer.Gap = again && peer.Gap > Duration(0) ? std::min<Duration>(2 * peer.Gap, LongestGap) : GapNow();
-    peer.Said = peer.Waiting->What;
+    Message &message = *peer.Waiting;
+    const bool again = peer.Said == message.What;
+    if (again && peer.Gap > Duration(0))
+    {
+        peer.Gap = std::min(3 * peer.Gap / 2, std::max<Duration>(LongestGap, GapNow()));
+        Settle(peer);  // the earlier copies
+    }
+    else
+    {
+        peer.Gap = GapNow();
+    }
+    peer.Said = message.What;
     if (!again)
     {
         peer.HandshakeAt = peer.Said == Step::Ask ? peer.HandshakeAt : now;
         _requestedAt = peer.Said == Step::Request ? now : _requestedAt;
     }
-    peer.SaidNumber = peer.Waiting->Number;
-    peer.SaidAgainAt = now + peer.Gap;
-    peer.IsRepeated = peer.IsRepeated || again;
+    peer.SaidNumber = message.Number;
+    peer.SaidAgainAt = message.Due = now + peer.Gap;
     peer.Rest.clear();
-    if (_repeatsFinal && peer.Said == Step::Final)
+    std::copy(message.Datagrams.begin(), message.Datagrams.end(), std::back_inserter(taken));
+    message.Place = ++_turn;
+    if (peer.Said == Step::Final)
     {
-        peer.SaidFinal = peer.Waiting->Datagrams;
+        peer.SaidFinal = std::move(message.Datagrams);
     }
-    std::move(peer.Waiting->Datagrams.begin(), peer.Waiting->Datagrams.end(), std::back_inserter(taken));
-    peer.Waiting.reset();
+    if (peer.Said == Step::Final || now - message.PutAt >= LongestSilence)
+    {
+        peer.Waiting.reset();
+    }
 }
 
 void KeyExchangeOutbox::Charge(Peer &peer, std::size_t size, bool waits, TimePoint now)
@@ -228,10 +250,6 @@ void KeyExchangeOutbox::Charge(Peer &peer, std::size_t size, bool waits, TimePoi
     if (!waits)
     {
         return;
-    }
-    if (peer.Unanswered == 0)
-    {
-        peer.UnansweredSince = now;
     }
     peer.Unanswered += size;
     peer.UnansweredUntil = now + std::max(peer.Gap, GapNow());

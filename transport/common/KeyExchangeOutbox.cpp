@@ -39,15 +39,14 @@ bool Answers(std::optional<KeyExchange::Step> said, KeyExchange::Step theirs)
 
 KeyExchangeOutbox::Duration KeyExchangeOutbox::GapNow() const
 {
-    constexpr int Times = 4;
-    return _answerTime ? std::clamp<Duration>(Times * *_answerTime, ShortestGap, LongestFirstGap)
+    return _answerTime ? std::clamp<Duration>(2 * *_answerTime, ShortestGap, LongestFirstGap)
                        : Duration(FirstGap);
 }
 
 KeyExchangeOutbox::Duration KeyExchangeOutbox::ControlGapNow() const
 {
-    return std::clamp<Duration>(2 * _answerTime.value_or(Duration(0)), ShortestControlGap,
-                                LongestFirstControlGap);
+    return _answerTime ? std::clamp<Duration>(2 * *_answerTime, ShortestControlGap, LongestFirstControlGap)
+                       : Duration(FirstControlGap);
 }
 
 KeyExchangeOutbox::Duration KeyExchangeOutbox::LongControlGapNow() const
@@ -76,7 +75,7 @@ void KeyExchangeOutbox::ForgetOldest()
 
 void KeyExchangeOutbox::Forget(std::map<KeyExchange::Prefix, Peer>::iterator peer)
 {
-    _unanswered -= peer->second.Unanswered;
+    Settle(peer->second);
     for (const Keys &keys : peer->second.KeysWaiting)
     {
         _waiting -= keys.What.Bytes.size();
@@ -138,7 +137,7 @@ bool KeyExchangeOutbox::Put(std::span<const std::uint8_t> datagram, const KeyExc
     else if (_waiting + datagram.size() <= MostWaiting)
     {
         _waiting += datagram.size();
-        peer.KeysWaiting.push_back({std::move(copy), what.Source, now, ++_turn});
+        peer.KeysWaiting.push_back({std::move(copy), what.Source, what.IsWhole, now, ++_turn});
     }
     return true;
 }
@@ -161,37 +160,35 @@ bool KeyExchangeOutbox::IsHeld(const KeyExchange &what, TimePoint now) const
 
 void KeyExchangeOutbox::PutHandshake(Peer &peer, Datagram datagram, const KeyExchange &what, TimePoint now)
 {
-    if (peer.Waiting && peer.Waiting->Number == what.Number)
+    const bool isOfWaiting = peer.Waiting && peer.Waiting->Number == what.Number;
+    const bool isOfSaid = peer.Said && peer.SaidNumber == what.Number;
+    if (isOfWaiting && peer.Waiting->Datagrams.size() < MostDatagrams)
     {
-        if (peer.Waiting->Datagrams.size() < MostDatagrams)
-        {
-            peer.Waiting->Datagrams.push_back(std::move(datagram));
-        }
-        return;
+        peer.Waiting->Datagrams.push_back(datagram);
     }
-    if (peer.Said && peer.SaidNumber == what.Number)
+    if (isOfSaid && peer.Rest.size() < MostDatagrams)
     {
-        if (peer.Rest.size() < MostDatagrams)
+        if (peer.Said == Step::Final)
         {
-            if (_repeatsFinal && peer.Said == Step::Final)
-            {
-                peer.SaidFinal.push_back(datagram);
-            }
-            peer.Rest.push_back(std::move(datagram));
+            peer.SaidFinal.push_back(datagram);
         }
-        return;
+        peer.Rest.push_back(std::move(datagram));
     }
-    if (what.What == Step::Rest)
+    // A fragment alone: a newer message has replaced the one that it belongs to.
+    if (isOfWaiting || isOfSaid || what.What == Step::Rest)
     {
-        return;  // a newer message has replaced the one that this fragment belongs to
+        return;
     }
     const Turn place = peer.Waiting ? peer.Waiting->Place : ++_turn;
     const TimePoint since = peer.Waiting ? peer.Waiting->Since : now;
-    const TimePoint due = peer.Said == what.What ? std::max(now, peer.SaidAgainAt) : now;
+    const TimePoint due = peer.Waiting && peer.Waiting->What == what.What ? peer.Waiting->Due
+                          : peer.Said == what.What                        ? std::max(now, peer.SaidAgainAt)
+                                                                          : now;
     peer.Waiting = Message{.What = what.What,
                            .Number = what.Number,
                            .Datagrams = {},
                            .Since = since,
+                           .PutAt = now,
                            .Due = due,
                            .Place = place};
     peer.Waiting->Datagrams.push_back(std::move(datagram));
@@ -231,21 +228,21 @@ bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
     {
         peer.Waiting.reset();
     }
-    if (what.What == Step::Reply && peer.Said == Step::Final && !peer.SaidFinal.empty() &&
-        (!peer.Waiting || peer.Waiting->Number == peer.SaidNumber))
+    if (what.What == Step::Reply && peer.Said == Step::Final && !peer.Waiting)
     {
-        const Turn place = peer.Waiting ? peer.Waiting->Place : ++_turn;
         peer.Waiting = Message{.What = Step::Final,
                                .Number = peer.SaidNumber,
                                .Datagrams = peer.SaidFinal,
                                .Since = now,
+                               .PutAt = now,
                                .Due = now + FinalDelay,
-                               .Place = place};
+                               .Place = ++_turn};
     }
     if (Answers(peer.Said, what.What))
     {
         peer.HandshakeAt = what.IsHandshake() && !what.IsWhole ? now : peer.HandshakeAt;
-        Answered(peer, what.IsHandshake() && !what.IsWhole, now);
+        peer.Gap = Duration(0);
+        Settle(peer);
     }
     if (what.What == Step::Keys)
     {
@@ -255,24 +252,28 @@ bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
            (peer.KeysWaiting.empty() && now - peer.KeysSaidAt >= _answerTime.value_or(Duration(0)));
 }
 
-void KeyExchangeOutbox::Answered(Peer &peer, bool tellsTime, TimePoint now)
+KeyExchangeStamp KeyExchangeOutbox::StampFor(const KeyExchange::Prefix &peer, TimePoint now) const
 {
-    if (peer.Unanswered == 0)
+    const auto ticks = [](Duration time)
+    { return static_cast<std::uint32_t>(std::chrono::duration_cast<Milliseconds>(time).count()); };
+    const Heard *const heard = _heard.Find(peer);
+    const bool isNew = heard != nullptr && now - heard->At < LongestAnswer;
+    return {.SentAt = ticks(now.time_since_epoch()),
+            .Echo = isNew ? heard->SentAt + ticks(now - heard->At) : 0};
+}
+
+void KeyExchangeOutbox::Stamped(const KeyExchange::Prefix &from, const KeyExchangeStamp &stamp, TimePoint now)
+{
+    _heard.Put(from, {stamp.SentAt, now});
+    const Milliseconds took(StampFor(from, now).SentAt - stamp.Echo);
+    if (stamp.Echo == 0 || took > LongestAnswer)
     {
         return;
     }
-    const std::size_t size = std::exchange(peer.Unanswered, 0);
-    _unanswered -= size;
-    peer.Gap = Duration(0);
-    if (std::exchange(peer.IsRepeated, false) || !tellsTime)
-    {
-        return;
-    }
-    const Duration took = std::max(now - peer.UnansweredSince, Duration(0));
-    _answerTime = std::max(took, _answerTime.value_or(took) / 2);
+    _answerTime = std::max<Duration>(took, _answerTime.value_or(took) / 2);
     if (took <= Quick)
     {
-        _window = std::min(_window + size, LargestWindow);
+        _window = std::min(_window + FirstWindow / 4, LargestWindow);
     }
     else if (took > Late)
     {
@@ -296,8 +297,7 @@ void KeyExchangeOutbox::Expire(TimePoint now)
     {
         if (peer.Unanswered > 0 && peer.UnansweredUntil <= now)
         {
-            _unanswered -= std::exchange(peer.Unanswered, 0);
-            Lower(now);
+            Settle(peer);
         }
     }
 }

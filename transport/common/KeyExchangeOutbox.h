@@ -8,21 +8,24 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "common/KeyExchange.h"
+#include "common/KeyExchangeStamp.h"
+#include "common/RecentMap.h"
 
 namespace Rabit
 {
 
 // Schedules a session's datagrams to participants with keys until both sides can read each other. Stands
 // between the vendor and the network. The exchange takes 30 to 40 kB for each pair. The vendors send to all
-// peers at once, and repeat each handshake message every 0.5 or 1 s until it is answered. On a radio these
+// peers at once, and repeat each handshake message every second until it is answered. On a radio these
 // repetitions fill the channel, answers queue behind them for longer than that, and no exchange ever
-// completes.
+// completes. Where datagrams are lost, each lost one costs a second.
 //
-// - A window bounds the unanswered bytes to all peers together. Quick answers enlarge it; late or missing
-//   answers halve it.
+// - A window bounds the unanswered bytes to all peers together. Quick answers enlarge it, late ones halve it.
+//   A missing answer does neither: loss is no sign of a full channel, delay is.
 // - Messages that end an exchange go before those that begin one, in the order of KeyExchange::Step; within a
 //   step, the longest waiting goes first. The last message of a handshake, and control, do not wait for the
 //   window.
@@ -30,8 +33,9 @@ namespace Rabit
 //   Calm answer times. It waits no longer than LongestCalm after the first request to another peer, and in
 //   all no longer than LongestWait. The more exchanges are under way at once, the longer each lasts, and all
 //   that time the vendors repeat control.
-// - Of the handshake messages to a peer only the newest waits. A message that the peer has shown not to need
-//   any more is dropped. A repetition goes when an answer had time to arrive, with exponential backoff.
+// - The newest handshake message to a peer is repeated, with the same number, so that a receiver can collect
+//   its fragments. It is repeated when an answer had time to arrive, with exponential backoff. It is dropped
+//   when the peer has shown not to need it any more, or the vendor has not sent it for LongestSilence.
 // - Keys keep their order and are dropped only beyond MostWaiting bytes. Control of each kind has one slot:
 //   the newest goes, with exponential backoff, which is reset when keys come or go. A writer's control stays
 //   behind its keys. Control about keys goes before other control. All control to a peer together may take
@@ -41,10 +45,9 @@ namespace Rabit
 // - Datagrams protected as a whole are scheduled in the same way if they are for a peer with a recent
 //   exchange. So is control of this kind to all peers, since the vendors repeat it too quickly as well.
 //   Otherwise they are sent unchanged.
-// - The last message of a handshake answers the peer's certificate (Step::Reply). A vendor that sends it once
-//   never answers a peer that did not get it, and shows its certificate again. If `repeatsFinal`, it is
-//   repeated here, FinalDelay after the certificate: Fast DDS does not listen while it sends its certificate,
-//   and never a second time to the same message.
+// - The last message of a handshake answers the peer's certificate (Step::Reply), each time that it comes.
+//   It goes FinalDelay after the certificate: Fast DDS does not listen while it sends its certificate, and
+//   never a second time to the same message.
 // - Datagrams of idle endpoints are dropped: the vendors would request data from each other that never comes.
 // - A rate limits all of this, if one is set.
 //
@@ -64,20 +67,26 @@ public:
     // Bounds of the answer time: Quick answers enlarge the window, Late ones halve it.
     static constexpr Milliseconds Quick{200};
     static constexpr Milliseconds Late{1000};
-    // Interval between a message and its repetition: four times the answer time, within these bounds.
-    static constexpr Milliseconds FirstGap{500};
-    static constexpr Milliseconds ShortestGap{250};
+    // Longer answer times, and stamps that came longer ago, are not taken for true.
+    static constexpr Milliseconds LongestAnswer{20000};
+    // Interval between a message and its repetition: twice the answer time, within these bounds, and FirstGap
+    // before one is known. Later intervals grow by half, up to LongestGap if answers do not take longer.
+    static constexpr Milliseconds FirstGap{100};
+    static constexpr Milliseconds ShortestGap{50};
     static constexpr Milliseconds LongestFirstGap{4000};
-    static constexpr Milliseconds LongestGap{8000};
+    static constexpr Milliseconds LongestGap{1000};
+    // The vendors repeat a message every second, as long as they want an answer.
+    static constexpr Milliseconds LongestSilence{2000};
     // The same for control, with intervals that double: from twice the answer time up to four times.
-    static constexpr Milliseconds ShortestControlGap{50};
-    static constexpr Milliseconds LongestFirstControlGap{1000};
+    static constexpr Milliseconds FirstControlGap{50};
+    static constexpr Milliseconds ShortestControlGap{20};
+    static constexpr Milliseconds LongestFirstControlGap{2000};
     static constexpr Milliseconds ShortestLongControlGap{200};
-    static constexpr Milliseconds LongestControlGap{1000};
+    static constexpr Milliseconds LongestControlGap{4000};
     static constexpr double ControlShare = 0.25;
     // Bytes of control that may go before any others, or after a pause.
     static constexpr double MostControlAhead = 2000.0;
-    static constexpr Milliseconds FinalDelay{50};
+    static constexpr Milliseconds FinalDelay{20};
     static constexpr int Calm = 4;
     static constexpr Milliseconds LongestCalm{3000};
     static constexpr Milliseconds LongestWait{15000};
@@ -95,8 +104,6 @@ public:
         std::vector<std::uint8_t> Bytes;
     };
 
-    explicit KeyExchangeOutbox(bool repeatsFinal = false) : _repeatsFinal(repeatsFinal) {}
-
     // Limits the rate to `most` bytes per second; 0: unlimited.
     void SetRate(double most) { _most = most; }
     // Takes a datagram that the vendor wants to send; `route` is any number, returned by TakeDue. Returns
@@ -105,6 +112,8 @@ public:
              TimePoint now);
     // Notes a datagram that arrived for us. Returns false if the vendor should not see it.
     bool Received(const KeyExchange &what, TimePoint now);
+    // Notes the end of a datagram that arrived, also of a fragment.
+    void Stamped(const KeyExchange::Prefix &from, const KeyExchangeStamp &stamp, TimePoint now);
     // Time at which to call TakeDue; none: nothing waits.
     std::optional<TimePoint> Due() const;
     // Returns the datagrams to send now.
@@ -131,6 +140,7 @@ private:
         std::uint64_t Number = 0;
         std::vector<Datagram> Datagrams;
         TimePoint Since;  // when a message began to wait, which newer ones have replaced since
+        TimePoint PutAt;  // when the vendor sent it
         TimePoint Due;
         Turn Place = 0;
     };
@@ -155,13 +165,14 @@ private:
     {
         Datagram What;
         std::uint32_t Source = 0;
+        bool IsWhole = false;  // KeyExchange::IsWhole
         TimePoint Since{};
         Turn Place = 0;
     };
     struct Peer
     {
-        std::optional<Message> Waiting;
-        std::optional<Step> Said;  // handshake step sent last; if set, then:
+        std::optional<Message> Waiting;  // to be sent, or sent and to be repeated
+        std::optional<Step> Said;        // handshake step sent last; if set, then:
         std::uint64_t SaidNumber = 0;
         std::vector<Datagram> SaidFinal;  // to be repeated, if Said is Final
         TimePoint SaidAgainAt;            // no repetition before this
@@ -172,10 +183,8 @@ private:
         std::map<ControlKind, Control> Controls;
         double ControlAhead = MostControlAhead;  // bytes of control that may go now
         TimePoint ControlSaidAt{};
-        std::size_t Unanswered = 0;  // bytes; if not 0, the next three are valid
-        TimePoint UnansweredSince;
-        TimePoint UnansweredUntil;  // after this they count as lost
-        bool IsRepeated = false;    // a repetition is among them, so that an answer tells no time
+        std::size_t Unanswered = 0;  // bytes
+        TimePoint UnansweredUntil;   // if there are any: after this they count as lost
         TimePoint TouchedAt;
         TimePoint ExchangedAt;
         TimePoint HandshakeAt{};  // when a handshake with it last made progress
@@ -217,8 +226,13 @@ private:
     void Take(const Choice &choice, TimePoint now, std::vector<Datagram> &taken);
     void TakeMessage(Peer &peer, TimePoint now, std::vector<Datagram> &taken);
     void Charge(Peer &peer, std::size_t size, bool waits, TimePoint now);
-    // `tellsTime`: the peer sent it only as an answer, so that it tells the answer time.
-    void Answered(Peer &peer, bool tellsTime, TimePoint now);
+    struct Heard
+    {
+        std::uint32_t SentAt = 0;
+        TimePoint At;
+    };
+    KeyExchangeStamp StampFor(const KeyExchange::Prefix &peer, TimePoint now) const;
+    void Settle(Peer &peer) { _unanswered -= std::exchange(peer.Unanswered, 0); }
     void Expire(TimePoint now);
     void Lower(TimePoint now);
     Duration GapNow() const;
@@ -226,7 +240,6 @@ private:
     Duration LongControlGapNow() const;
     void BeginControlAnew(Peer &peer);
 
-    const bool _repeatsFinal;
     double _most = 0.0;
     TimePoint _freeAt{};  // when the rate allows the next datagram
     std::size_t _window = FirstWindow;
@@ -237,6 +250,7 @@ private:
     TimePoint _exchangedAt{};  // with any peer
     TimePoint _requestedAt{};  // when a first request went to any peer
     std::map<KeyExchange::Prefix, Peer> _peers;
+    RecentMap<KeyExchange::Prefix, Heard> _heard{MostPeers};
     Turn _turn = 0;
 };
 

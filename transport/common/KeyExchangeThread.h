@@ -8,10 +8,13 @@
 #include <optional>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "common/DueThread.h"
+#include "common/HandshakeFragments.h"
 #include "common/KeyExchangeOutbox.h"
 #include "common/RecentNumbers.h"
+#include "common/RtpsReader.h"
 
 namespace Rabit
 {
@@ -23,11 +26,11 @@ class KeyExchangeThread final : public DueThread
 {
 public:
     // Called without a lock of this object, on the thread or in Put.
-    using Send = std::function<void(const Route &route, std::span<const std::uint8_t> datagram)>;
+    using Send = std::function<void(const Route &route, std::vector<std::uint8_t> &datagram)>;
 
-    explicit KeyExchangeThread(std::shared_ptr<DiscoveryTurns> turns,
-                               KeyExchangeOutbox outbox = KeyExchangeOutbox())
-        : _turns(std::move(turns)), _exchanges(std::move(outbox))
+    // `largest`: size of a datagram with a handshake's message.
+    KeyExchangeThread(std::shared_ptr<DiscoveryTurns> turns, std::size_t largest)
+        : _turns(std::move(turns)), _largest(largest)
     {
     }
     ~KeyExchangeThread() { Stop(); }
@@ -49,7 +52,14 @@ public:
         }
         _self = what.From;
         _exchanges.SetRate(_turns->KeyRate());
-        if (!_exchanges.Put(datagram, what, _routes.Of(route).first, Clock::now()))
+        const std::uint64_t number = _routes.Of(route).first;
+        const auto pieces = what.IsHandshake() && !what.IsForOther ? CutHandshake(datagram, _largest)
+                                                                   : std::vector<std::vector<std::uint8_t>>();
+        for (const auto &piece : pieces)
+        {
+            _exchanges.Put(piece, ReadKeyExchange(piece).value_or(what), number, Clock::now());
+        }
+        if (pieces.empty() && !_exchanges.Put(datagram, what, number, Clock::now()))
         {
             return false;
         }
@@ -64,6 +74,15 @@ public:
         const bool isHeard = what.To != _self || _exchanges.Received(what, Clock::now());
         WakeIfEarlier();
         return isHeard;
+    }
+    // Takes any received datagram, before the guard has changed it.
+    void Came(std::span<const std::uint8_t> datagram)
+    {
+        if (const auto stamp = KeyExchangeStamp::Of(datagram))
+        {
+            const std::lock_guard lock(_mutex);
+            _exchanges.Stamped(Rtps::PrefixOf(datagram.subspan(Rtps::PrefixAt)), *stamp, Clock::now());
+        }
     }
     // True if it is for the own participant.
     bool IsForUs(const KeyExchange &what) const
@@ -92,7 +111,7 @@ private:
     std::optional<Clock::time_point> Due() override { return _exchanges.Due(); }
     void Work(std::unique_lock<std::mutex> &lock) override
     {
-        for (const KeyExchangeOutbox::Datagram &datagram : _exchanges.TakeDue(Clock::now()))
+        for (KeyExchangeOutbox::Datagram &datagram : _exchanges.TakeDue(Clock::now()))
         {
             // Null: thousands of other routes have come since.
             if (const Route *const known = _routes.KeyOf(datagram.Route))
@@ -106,6 +125,7 @@ private:
     }
 
     const std::shared_ptr<DiscoveryTurns> _turns;
+    const std::size_t _largest;
     Send _send;
     KeyExchangeOutbox _exchanges;        // guarded by _mutex, like those below
     KeyExchange::Prefix _self{};         // known once something was exchanged

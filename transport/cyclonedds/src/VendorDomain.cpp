@@ -346,6 +346,10 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
         }
         return domain.JoinDelivered({datagram, capacity}, 0);
     }
+    if (domain._secured)
+    {
+        domain._keys.Came({datagram, size});
+    }
     const std::size_t alone = domain.Admit({datagram, capacity}, size, host);
     const std::size_t admitted = domain._meets && !IsOfSamples({datagram, alone})
                                      ? domain.JoinDelivered({datagram, capacity}, alone)
@@ -397,8 +401,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome,
              _goodbyes),
-      // The vendor sends the last message of a handshake once.
-      _keys(turns, KeyExchangeOutbox(true))
+      _keys(turns, settings.MaxDatagram)
 {
     if (_secured)
     {

@@ -23,6 +23,7 @@
 #include "common/HeldDatagrams.h"
 #include "common/RecentNumbers.h"
 #include "common/RtpsTraffic.h"
+#include "common/RtpsWriter.h"
 #include "common/SendingSamples.h"
 #include "rtps/CardRoutes.h"
 #include "rtps/DiscoverySubmessages.h"
@@ -90,7 +91,15 @@ public:
     {
         if (Keys() != nullptr)
         {
-            Keys()->Start([this](const Route &route, auto datagram) { SendTo({route}, datagram); });
+            Keys()->Start(
+                [this](const Route &route, std::vector<std::uint8_t> &datagram)
+                {
+                    while (EndsLikeStatistics(datagram))
+                    {
+                        AppendSubmessageHeader(datagram, SubmessageKind::Pad, 0);
+                    }
+                    SendTo({route}, datagram);
+                });
         }
         if (MeetingThread *const meeting = Meeting())
         {
@@ -240,6 +249,10 @@ public:
         {
             const std::lock_guard lock(_receiving);
             _receiver = {next, local, remote};
+        }
+        if (Keys() != nullptr)
+        {
+            Keys()->Came(datagram);
         }
         const auto handOn = [&](std::span<std::uint8_t> admitted)
         {

@@ -99,7 +99,7 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                                   .Memory = _multicast ? settings.Memory : settings.Lease,
                                   .IsMulticast = _multicast},
           context.Turns)),
-      _keys(settings.Security ? std::make_shared<KeyThread>(context.Turns) : nullptr)
+      _keys(settings.Security ? std::make_shared<KeyThread>(context.Turns, settings.MaxDatagram) : nullptr)
 {
     auto attributes = MakeParticipantAttributes(settings, Log(),
                                                 {.Announce = [this] { Announce(); },
@@ -123,9 +123,13 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                              (settings.Security ? ", or it does not accept the keys" : ""));
     }
     _participant.load()->enable();
-    if (settings.Security && !KeyAddressees::Heed(*_participant))
+    if (settings.Security)
     {
-        Log()->Line("Fast DDS does not show its writer of keys: it says them to all");
+        KeyAddressees::Hasten(*_participant);
+        if (!KeyAddressees::Heed(*_participant))
+        {
+            Log()->Line("Fast DDS does not show its writer of keys: it says them to all");
+        }
     }
 }
 
