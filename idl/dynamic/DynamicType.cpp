@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "dynamic/CdrBuilder.h"
+#include <rabit/dynamic/CdrBuilder.h>
 #include "dynamic/FreshValue.h"
 #include "dynamic/JsonEncoder.h"
 #include "dynamic/JsonSink.h"
@@ -278,6 +278,11 @@ bool DynamicType::KeyHashOf(std::span<const std::uint8_t> bytes, std::array<std:
     }
     hash = hasher.Finish();
     return true;
+}
+
+const Dynamic::Shape &DynamicType::Root() const
+{
+    return *_shapes->Root;
 }
 
 bool DynamicType::IsSameAs(const DynamicType &other) const

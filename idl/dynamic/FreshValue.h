@@ -1,8 +1,8 @@
 // New values, equal to those of generated code.
 #pragma once
 
-#include "dynamic/CdrBuilder.h"
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/CdrBuilder.h>
+#include <rabit/dynamic/Shape.h>
 
 namespace Rabit::Dynamic
 {

@@ -16,7 +16,16 @@ void idl_verror(const idl_pstate_t *pstate, const idl_location_t *loc, const cha
 {
     char line[512];
     (void)pstate;
-    const int head = loc ? snprintf(line, sizeof line, "line %u: ", (unsigned)loc->first.line) : 0;
+    int head = 0;
+    if (loc && loc->first.file)
+    {
+        head = snprintf(line, 300, "%s:%u: ", loc->first.file->name, (unsigned)loc->first.line);
+        head = head < 300 ? head : 299;
+    }
+    else if (loc)
+    {
+        head = snprintf(line, sizeof line, "line %u: ", (unsigned)loc->first.line);
+    }
     vsnprintf(line + head, sizeof line - (size_t)head, fmt, ap);
     if (!Collecting)
     {
@@ -50,7 +59,7 @@ void idl_warning(const idl_pstate_t *pstate, idl_warning_t warning, const idl_lo
     va_end(ap);
 }
 
-const void *RabitParseIdl(const char *text, char *reason, size_t reasonSize)
+const void *RabitParseIdl(const char *text, bool isFile, char *reason, size_t reasonSize)
 {
     idl_pstate_t *state = NULL;
     reason[0] = '\0';
@@ -66,7 +75,10 @@ const void *RabitParseIdl(const char *text, char *reason, size_t reasonSize)
         result = idl_parse_string(state, text);
         if (result != IDL_RETCODE_OK)
         {
-            idl_delete_pstate(state);
+            if (!isFile)
+            {
+                idl_delete_pstate(state);
+            }
             state = NULL;
         }
     }

@@ -3,6 +3,7 @@
 #include "dynamic/FreshValue.h"
 #include "dynamic/JsonText.h"
 #include "dynamic/JsonValues.h"
+#include "dynamic/Limits.h"
 
 #include <rabit/idl/NearestWord.h>
 

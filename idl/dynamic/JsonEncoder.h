@@ -1,8 +1,8 @@
 // Encodes JSON as the bytes of a value, or tells why it does not fit.
 #pragma once
 
-#include "dynamic/CdrBuilder.h"
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/CdrBuilder.h>
+#include <rabit/dynamic/Shape.h>
 
 #include <nlohmann/json.hpp>
 

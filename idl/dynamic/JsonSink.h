@@ -1,7 +1,7 @@
 // A sink of a walk that writes the value as JSON, in the form that DynamicType.h describes.
 #pragma once
 
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 
 #include <charconv>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Single values of JSON: reading them, and showing them in the reason of a refusal.
 #pragma once
 
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,7 @@
 // A sink of a walk that hashes the key of a struct.
 #pragma once
 
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 
 #include <rabit/idl/KeyHasher.h>
 

@@ -1,8 +1,8 @@
 // A sink of a walk that writes the value in normal form: equal values give equal bytes.
 #pragma once
 
-#include "dynamic/CdrBuilder.h"
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/CdrBuilder.h>
+#include <rabit/dynamic/Shape.h>
 
 #include <bit>
 #include <type_traits>

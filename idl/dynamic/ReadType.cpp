@@ -31,10 +31,19 @@ std::string Line(std::string_view reason)
 
 std::unique_ptr<const Shapes> ReadType(std::string_view idlText, const std::string &name, std::string &reason)
 {
-    reason = WhyNotParsed(idlText);
+    std::unique_ptr<const Shapes> shapes;
+    reason = ReadModel(idlText, false,
+                       [&](const RabitIdl::Model &model) { shapes = ShapeBuilder(model).Build(name); });
+    return shapes;
+}
+
+std::string ReadModel(std::string_view idlText, bool isTrusted,
+                      const std::function<void(const RabitIdl::Model &)> &use)
+{
+    std::string reason = isTrusted ? "" : WhyNotParsed(idlText);
     if (!reason.empty())
     {
-        return nullptr;
+        return reason;
     }
     // The parser does not promise to be thread-safe.
     static std::mutex mutex;
@@ -42,11 +51,10 @@ std::unique_ptr<const Shapes> ReadType(std::string_view idlText, const std::stri
     const std::string text(idlText);  // ends in zero
     char parserReason[512];
     const std::unique_ptr<const void, FreeState> state(
-        RabitParseIdl(text.c_str(), parserReason, sizeof parserReason));
+        RabitParseIdl(text.c_str(), isTrusted, parserReason, sizeof parserReason));
     if (!state)
     {
-        reason = parserReason[0] != '\0' ? Line(parserReason) : "not IDL";
-        return nullptr;
+        return parserReason[0] != '\0' ? Line(parserReason) : "not IDL";
     }
     try
     {
@@ -54,16 +62,15 @@ std::unique_ptr<const Shapes> ReadType(std::string_view idlText, const std::stri
         const RabitIdl::Model model = RabitIdl::ModelReader(state.get(), refusals).Read();
         if (!refusals.Empty())
         {
-            // The line is `:12: reason`, as there is no file.
-            reason = Line("line " + refusals.First().substr(1));
-            return nullptr;
+            // A text that is in no file has the line as `:12: reason`.
+            return Line(isTrusted ? refusals.First() : "line " + refusals.First().substr(1));
         }
-        return ShapeBuilder(model).Build(name);
+        use(model);
+        return "";
     }
     catch (const Refused &refused)
     {
-        reason = Line(refused.what());
-        return nullptr;
+        return Line(refused.what());
     }
 }
 

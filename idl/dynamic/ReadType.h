@@ -1,8 +1,11 @@
 // Makes the shapes of one message from an IDL text.
 #pragma once
 
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 
+#include "model/Model.h"
+
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,5 +17,10 @@ namespace Rabit::Dynamic
 // for each other while they parse.
 std::unique_ptr<const Shapes> ReadType(std::string_view idlText, const std::string &name,
                                        std::string &reason);
+
+// Passes the model of a text to a function, which may throw Refused. Returns why there is none, in one line;
+// empty if it was called. The text is parsed unchecked if it `isTrusted`. Threads as above.
+std::string ReadModel(std::string_view idlText, bool isTrusted,
+                      const std::function<void(const RabitIdl::Model &)> &use);
 
 }  // namespace Rabit::Dynamic

@@ -1,4 +1,4 @@
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 
 #include <algorithm>
 

@@ -1,7 +1,7 @@
 // Makes the shapes of one message from the model of an IDL text.
 #pragma once
 
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 #include "model/Model.h"
 
 #include <map>

@@ -1,7 +1,7 @@
 // A sink of a walk that writes the value as text for people, like the generated ToString.
 #pragma once
 
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 
 #include <rabit/idl/TextWriter.h>
 

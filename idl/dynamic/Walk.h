@@ -2,7 +2,7 @@
 // passes its parts to a sink. Bytes are checked here, so all sinks refuse the same ones.
 #pragma once
 
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 
 #include <rabit/idl/CdrReader.h>
 #include <rabit/idl/GeneratedMessageType.h>

@@ -1,5 +1,6 @@
 #include "CppText.h"
 
+#include "model/LiteralText.h"
 #include "model/Names.h"
 
 #include <charconv>
@@ -53,18 +54,6 @@ std::string FloatText(Primitive primitive, double value)
 }
 
 }  // namespace
-
-std::string Number(double value)
-{
-    char digits[64];
-    const auto result = std::to_chars(digits, digits + sizeof digits, value);
-    std::string text(digits, result.ptr);
-    if (text.find_first_of(".e") == std::string::npos)
-    {
-        text += ".0";
-    }
-    return text;
-}
 
 std::string CppPrimitive(Primitive primitive)
 {
@@ -270,34 +259,6 @@ bool IsSmall(const Type &alias)
     }
     return type.What == Type::Kind::Named && (dynamic_cast<const EnumDefinition *>(type.Named) != nullptr ||
                                               dynamic_cast<const BitmaskDefinition *>(type.Named) != nullptr);
-}
-
-std::string Quote(const std::string &text)
-{
-    static const char digits[] = "01234567";
-    std::string quoted = "\"";
-    for (const char letter : text)
-    {
-        const auto code = static_cast<unsigned char>(letter);
-        if (letter == '"' || letter == '\\')
-        {
-            quoted += '\\';
-            quoted += letter;
-        }
-        else if (code < 0x20 || code >= 0x7f || letter == '?')
-        {
-            // An escape of three octal digits ends by itself, whatever character follows.
-            quoted += '\\';
-            quoted += digits[code >> 6];
-            quoted += digits[(code >> 3) & 7];
-            quoted += digits[code & 7];
-        }
-        else
-        {
-            quoted += letter;
-        }
-    }
-    return quoted + "\"";
 }
 
 }  // namespace RabitIdl

@@ -25,8 +25,5 @@ std::string CppLabel(std::int64_t value, const Type &discriminator);
 std::string Initializer(const Member &member);
 // True if a function should take the type by value.
 bool IsSmall(const Type &type);
-// A string literal of C++ with that content.
-std::string Quote(const std::string &text);
-std::string Number(double value);
 
 }  // namespace RabitIdl

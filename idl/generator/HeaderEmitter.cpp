@@ -2,9 +2,9 @@
 
 #include "CppText.h"
 #include "Layout.h"
-#include "TextBuilder.h"
 #include "UnionEmitter.h"
 #include "model/Names.h"
+#include "model/TextBuilder.h"
 
 #include <algorithm>
 #include <set>

@@ -1,10 +1,10 @@
 #include "SourceEmitter.h"
 
 #include "CppText.h"
-#include "IdlTextEmitter.h"
-#include "TextBuilder.h"
 #include "UnionEmitter.h"
+#include "model/IdlTextEmitter.h"
 #include "model/Names.h"
+#include "model/TextBuilder.h"
 
 namespace RabitIdl
 {

@@ -1,8 +1,8 @@
 // The class, the functions and the codec of a union.
 #pragma once
 
-#include "TextBuilder.h"
 #include "model/Model.h"
+#include "model/TextBuilder.h"
 
 namespace RabitIdl
 {

@@ -1,7 +1,7 @@
 // Random samples of any type, made by its shape: every value that the type allows is possible.
 #pragma once
 
-#include "dynamic/Shape.h"
+#include <rabit/dynamic/Shape.h>
 
 #include <cstdint>
 #include <random>

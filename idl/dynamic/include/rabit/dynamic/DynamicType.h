@@ -17,8 +17,9 @@ namespace Rabit
 {
 namespace Dynamic
 {
+struct Shape;
 struct Shapes;
-}
+}  // namespace Dynamic
 struct ParsedType;
 struct EncodedSample;
 
@@ -97,6 +98,9 @@ public:
     bool Deserialize(std::span<const std::uint8_t> bytes, RabitMessage &message) const override;
     bool HasKey() const override;
     bool KeyHashOf(std::span<const std::uint8_t> bytes, std::array<std::uint8_t, 16> &hash) const override;
+
+    // How the type is built, for programs that make samples or read them themselves (rabit/dynamic/Shape.h).
+    const Dynamic::Shape &Root() const;
 
     // True if the other type has the same name and text.
     bool IsSameAs(const DynamicType &other) const;

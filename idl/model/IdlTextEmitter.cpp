@@ -1,8 +1,8 @@
-#include "IdlTextEmitter.h"
+#include "model/IdlTextEmitter.h"
 
-#include "CppText.h"
-#include "TextBuilder.h"
+#include "model/LiteralText.h"
 #include "model/Names.h"
+#include "model/TextBuilder.h"
 
 #include <algorithm>
 #include <cctype>

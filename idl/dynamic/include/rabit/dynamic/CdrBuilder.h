@@ -2,8 +2,6 @@
 // idl/runtime's CdrWriter.
 #pragma once
 
-#include "dynamic/Limits.h"
-
 #include <rabit/idl/GeneratedMessageType.h>
 
 #include <bit>

@@ -1,0 +1,114 @@
+#include "dynamic/IdlIncludes.h"
+
+#include "dynamic/ShapeBuilder.h"
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace Rabit::Dynamic
+{
+namespace
+{
+
+constexpr std::size_t DeepestInclude = 32;
+
+class Includer
+{
+public:
+    explicit Includer(const std::vector<std::string> &folders) : _folders(folders) {}
+
+    void Add(const std::filesystem::path &path, const std::string &from, std::size_t depth)
+    {
+        std::ifstream file(path, std::ios::binary);
+        if (!file || std::filesystem::is_directory(path))
+        {
+            throw Refused(from + path.string() + ": cannot be read");
+        }
+        if (depth > DeepestInclude)
+        {
+            throw Refused(from + "the files include each other");
+        }
+        const std::string name = path.string();
+        Mark(1, name, depth == 0 ? "" : " 1");
+        std::string line;
+        for (std::size_t number = 1; std::getline(file, line); ++number)
+        {
+            const std::string place = name + ":" + std::to_string(number) + ": ";
+            const std::size_t first = line.find_first_not_of(" \t");
+            if (first == std::string::npos || line[first] != '#')
+            {
+                Text << line << '\n';
+                continue;
+            }
+            std::smatch match;
+            static const std::regex include(R"(\s*#\s*include\s*["<]([^">]+)[">].*)");
+            static const std::regex guard(
+                R"(\s*#\s*(ifndef\s+\w+|define\s+\w+|endif|pragma\s+once)\s*(//.*|/\*.*)?\r?)");
+            if (std::regex_match(line, match, include))
+            {
+                Include(path, match[1], place, depth);
+                Mark(number + 1, name, " 2");
+            }
+            else if (std::regex_match(line, guard))
+            {
+                Text << '\n';
+            }
+            else
+            {
+                throw Refused(place + "`" + line.substr(first) +
+                              "` is not supported here; of the preprocessor only #include, #pragma once and "
+                              "an #ifndef around the file are");
+            }
+        }
+    }
+
+    std::ostringstream Text;
+
+private:
+    void Mark(std::size_t line, const std::string &file, const char *flag)
+    {
+        Text << "# " << line << " \"" << file << '"' << flag << '\n';
+    }
+
+    void Include(const std::filesystem::path &includer, const std::string &name, const std::string &place,
+                 std::size_t depth)
+    {
+        std::vector<std::filesystem::path> places{includer.parent_path() / name};
+        for (const std::string &folder : _folders)
+        {
+            places.push_back(std::filesystem::path(folder) / name);
+        }
+        for (const std::filesystem::path &path : places)
+        {
+            std::error_code error;
+            const auto whole = std::filesystem::canonical(path, error);
+            if (error)
+            {
+                continue;
+            }
+            if (_seen.insert(whole).second)
+            {
+                Add(path, place, depth + 1);
+            }
+            return;
+        }
+        throw Refused(place + "there is no file `" + name + "`");
+    }
+
+    const std::vector<std::string> &_folders;
+    std::set<std::filesystem::path> _seen;
+};
+
+}  // namespace
+
+std::string WithIncludes(const std::string &path, const std::vector<std::string> &folders)
+{
+    Includer includer(folders);
+    includer.Add(path, "", 0);
+    return includer.Text.str();
+}
+
+}  // namespace Rabit::Dynamic

@@ -1,0 +1,15 @@
+// One text of an IDL file and all files that it includes, for the parser, which knows no preprocessor.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace Rabit::Dynamic
+{
+
+// The text, with line markers (`# 12 "uav.idl"`) from which the parser knows the places. A file that is
+// included again is left out. Throws Refused (ShapeBuilder.h), with file and line, for a file that cannot be
+// read and for other directives than IdlFile.h names.
+std::string WithIncludes(const std::string &path, const std::vector<std::string> &folders);
+
+}  // namespace Rabit::Dynamic
