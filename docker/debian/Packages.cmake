@@ -11,6 +11,9 @@ set(CPACK_COMPONENTS_ALL dev tools)
 if(TARGET ground)
   list(APPEND CPACK_COMPONENTS_ALL ground)
 endif()
+if(TARGET rabit_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -37,6 +40,12 @@ set(CPACK_COMPONENT_TOOLS_DESCRIPTION "The program rabit, which looks at a fleet
 set(CPACK_DEBIAN_GROUND_PACKAGE_NAME rabit-ground-station)
 set(CPACK_DEBIAN_GROUND_PACKAGE_SECTION science)
 set(CPACK_COMPONENT_GROUND_DESCRIPTION "A ground station that shows a fleet on a page and commands it.")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-rabit)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${RABIT_PYTHON_VERSION}), python3 (<< ${RABIT_PYTHON_NEXT}), python3-numpy")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib, rabit-tools")
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python package rabit: nodes of a fleet, its messages and queues, and its recordings.")
 
 # Debian requires a copyright file in each package.
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)

@@ -243,16 +243,21 @@ void ReadSend(const YamlMap &map, GatewayConfig &config)
     }
 }
 
-YamlMap OpenFile(const std::string &file)
+YamlMap OpenText(const std::string &file, const std::string &text)
 {
     return {file,
-            Parse(file, ReadFile(file)),
+            Parse(file, text),
             "the configuration",
             {"node",           "name",        "domain",       "transport",     "interfaces",
              "peers",          "multicast",   "max_datagram", "shared_memory", "lease",
              "backend_config", "state_dir",   "security",     "radio",         "record",
              "publish",        "subscribe",   "accept",       "send",          "foreign",
              "foxglove",       "problems_of", "reports",      "parameters",    "paths"}};
+}
+
+YamlMap OpenFile(const std::string &file)
+{
+    return OpenText(file, ReadFile(file));
 }
 
 void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig &config)
@@ -268,6 +273,30 @@ void ReadName(const YamlMap &map, const std::string &nodeOverride, GatewayConfig
     {
         map.Require("node");
     }
+}
+
+GatewayConfig ConfigOf(const YamlMap &map, const std::string &file, const std::string &nodeOverride,
+                       const TypeCheck &whyNoType)
+{
+    GatewayConfig config;
+    config.File = file;
+    ReadName(map, nodeOverride, config);
+    ReadNetwork(map, config);
+    ReadSecurity(map, "", config, config.Security);
+    ReadRadio(map, "", config, config.Radio);
+    ReadPaths(map, config);
+    ReadRecord(map, config);
+    ReadPublish(map, config);
+    ReadSubscribe(map, config);
+    ReadAccept(map, config);
+    ReadSend(map, config);
+    ReadForeign(map, config);
+    ReadPanels(map, config);
+    map.Read("problems_of", config.ProblemsOf);
+    map.Read("reports", config.Reports);
+    ReadParameters(map, config);
+    ValidateGatewayConfig(config, whyNoType);
+    return config;
 }
 
 }  // namespace
@@ -296,26 +325,13 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride,
                                 const TypeCheck &whyNoType)
 {
-    const YamlMap map = OpenFile(file);
-    GatewayConfig config;
-    config.File = file;
-    ReadName(map, nodeOverride, config);
-    ReadNetwork(map, config);
-    ReadSecurity(map, "", config, config.Security);
-    ReadRadio(map, "", config, config.Radio);
-    ReadPaths(map, config);
-    ReadRecord(map, config);
-    ReadPublish(map, config);
-    ReadSubscribe(map, config);
-    ReadAccept(map, config);
-    ReadSend(map, config);
-    ReadForeign(map, config);
-    ReadPanels(map, config);
-    map.Read("problems_of", config.ProblemsOf);
-    map.Read("reports", config.Reports);
-    ReadParameters(map, config);
-    ValidateGatewayConfig(config, whyNoType);
-    return config;
+    return ConfigOf(OpenFile(file), file, nodeOverride, whyNoType);
+}
+
+GatewayConfig ParseGatewayConfig(const std::string &text, const std::string &name,
+                                 const std::string &nodeOverride)
+{
+    return ConfigOf(OpenText(name, text), name, nodeOverride, WhyNotLinked);
 }
 
 }  // namespace Rabit

@@ -173,6 +173,30 @@ void Exploration::Subscribe(const SubscribeRule &rule)
     _wake();
 }
 
+void Exploration::SetExpiry(const std::string &node, const std::string &queue,
+                            std::chrono::milliseconds expire)
+{
+    const std::lock_guard lock(_mutex);
+    _expiries.emplace_back(node, queue, expire);
+    if (_links)
+    {
+        _links(node, queue, expire);
+    }
+}
+
+void Exploration::SetLinks(Expiry links)
+{
+    const std::lock_guard lock(_mutex);
+    _links = std::move(links);
+    for (const auto &[node, queue, expire] : _expiries)
+    {
+        if (_links)
+        {
+            _links(node, queue, expire);
+        }
+    }
+}
+
 bool Exploration::WaitUntilTaken(std::chrono::nanoseconds limit)
 {
     const std::uint64_t turn = ++_turnsAsked;

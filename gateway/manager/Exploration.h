@@ -13,6 +13,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -44,8 +45,16 @@ public:
     void LookForSubscribers(const std::vector<std::string> &messages) override;
     std::optional<std::map<std::string, Subscribers>> FoundSubscribers() const override;
     void Subscribe(const SubscribeRule &rule) override;
+    void SetExpiry(const std::string &node, const std::string &queue,
+                   std::chrono::milliseconds expire) override;
     bool WaitUntilTaken(std::chrono::nanoseconds limit) override;
     void SetOnChange(std::function<void()> onChange) override;
+
+    // Sets the function that knows the links, and tells it all that SetExpiry was told; null: there are none
+    // now. It is called with the lock held.
+    using Expiry = std::function<void(const std::string &node, const std::string &queue,
+                                      std::chrono::milliseconds expire)>;
+    void SetLinks(Expiry links);
 
     struct Requests
     {
@@ -80,6 +89,8 @@ private:
     // The requested texts that have not come. By definition, or by kind and node of a report.
     std::map<std::pair<std::uint64_t, std::string>, TypeQuestions::Wanted> _lacking;
     std::function<void()> _onChange;
+    Expiry _links;
+    std::vector<std::tuple<std::string, std::string, std::chrono::milliseconds>> _expiries;
     std::atomic<std::uint64_t> _turnsAsked{0};  // calls of WaitUntilTaken
     std::uint64_t _turnsDone = 0;               // those before the last whole unit of work began
     std::condition_variable _turnDone;

@@ -100,7 +100,11 @@ public:
         Open();
     }
 
-    ~Parts() { Close(); }
+    ~Parts()
+    {
+        _exploration.SetLinks(nullptr);
+        Close();
+    }
 
     bool IsOpen() const { return _isOpen; }
 
@@ -233,6 +237,9 @@ private:
             throw ConfigError(_config.File, 0,
                               "the local message `" + FleetMessageNameOf(_config) + "` is of another type");
         }
+        _exploration.SetLinks(
+            [this](const std::string &node, const std::string &queue, std::chrono::milliseconds expire)
+            { _links.SetExpiry(node, queue, expire); });
         MakePaths(transports, random);
     }
 

@@ -41,10 +41,12 @@ TopicSubscriber &Subscriptions::Make(const SubscribeRule &rule)
 
 bool Subscriptions::Add(const SubscribeRule &rule)
 {
-    if (std::any_of(_rules.begin(), _rules.end(),
-                    [&rule](const SubscribeRule &other) { return other.Message == rule.Message; }))
+    const auto known =
+        std::find_if(_rules.begin(), _rules.end(),
+                     [&rule](const SubscribeRule &other) { return other.Message == rule.Message; });
+    if (known != _rules.end())
     {
-        return false;
+        return Widen(static_cast<std::size_t>(known - _rules.begin()), rule);
     }
     _rules.push_back(rule);
     try
@@ -61,6 +63,34 @@ bool Subscriptions::Add(const SubscribeRule &rule)
         _rules.pop_back();
         throw;
     }
+    _known.clear();
+    return true;
+}
+
+bool Subscriptions::Widen(std::size_t place, const SubscribeRule &rule)
+{
+    SubscribeRule wider = _rules[place];
+    for (const std::string &pattern : rule.From)
+    {
+        if (std::none_of(wider.From.begin(), wider.From.end(),
+                         [&pattern](const std::string &other) { return CoversPattern(other, pattern); }))
+        {
+            wider.From.push_back(pattern);
+        }
+    }
+    if (wider.Type != rule.Type || wider.From.size() == _rules[place].From.size())
+    {
+        return false;
+    }
+    // A reader has its nodes from the beginning, so another one takes its place. States come anew.
+    auto subscriber = std::make_unique<TopicSubscriber>(wider, *MessageTypeRegistry::Find(wider.Type),
+                                                        _origins, _workspace, _handlers);
+    for (TransportSession *session : _sessions)
+    {
+        subscriber->Open(*session);
+    }
+    _subscriptions[place].Subscriber = std::move(subscriber);
+    _rules[place] = std::move(wider);
     _known.clear();
     return true;
 }

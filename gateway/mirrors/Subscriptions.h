@@ -36,8 +36,9 @@ public:
     // Reads from that session as well, and keeps it until Close. Throws TransportError.
     void Open(TransportSession &session);
     void Close();
-    // Adds a rule while open; false if the message is subscribed to already. Throws TransportError. OnOffers
-    // then returns all nodes once more.
+    // Adds a rule while open. A message that is subscribed to already is then read from the nodes of both
+    // rules. False if that changes nothing, or the types differ. Throws TransportError. OnOffers then returns
+    // all nodes once more.
     bool Add(const SubscribeRule &rule);
     // Processes new announcements and incarnations. Returns the nodes that have one.
     std::vector<const PeerTable::Peer *> OnOffers(const PeersOverPaths &peers);
@@ -72,6 +73,8 @@ private:
     };
 
     TopicSubscriber &Make(const SubscribeRule &rule);
+    // Has the reader of that rule read from the nodes of the other rule, too. False if that changes nothing.
+    bool Widen(std::size_t place, const SubscribeRule &rule);
     static std::optional<QosProfile> OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer);
 
     std::deque<SubscribeRule> _rules;  // they stay where they are

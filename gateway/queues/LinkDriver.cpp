@@ -410,6 +410,13 @@ void LinkDriver::Forget(const std::string &node)
     static_cast<void>(_links->Forget(node));
 }
 
+void LinkDriver::SetExpiry(const std::string &node, const std::string &queue,
+                           std::chrono::milliseconds expire)
+{
+    const std::lock_guard lock(_mutex);
+    _expiries.insert(_expiries.begin(), {.To = node, .Queue = queue, .Expire = expire});
+}
+
 bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, const std::string &type,
                          const LinkPayload &payload, const Receipt &receipt)
 {
@@ -420,7 +427,12 @@ bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, cons
         const std::lock_guard lock(_mutex);
         if (!_links->HasLinkTo(node, queue))
         {
-            _links->Configure(node, queue, SendOptions(_config.Send, node, queue), Now());
+            LinkOptions options = SendOptions(_config.Send, node, queue);
+            if (const SendRule *expiry = FindSendRule(_expiries, node, queue))
+            {
+                options.Expire = expiry->Expire;
+            }
+            _links->Configure(node, queue, options, Now());
         }
         enqueued = _links->Enqueue(node, queue, type, payload, Now());
         if (enqueued.Accepted())

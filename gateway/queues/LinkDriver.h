@@ -114,6 +114,10 @@ public:
     bool Enqueue(const std::string &node, const std::string &queue, const std::string &type,
                  const LinkPayload &payload, const Receipt &receipt);
 
+    // Has messages for a queue of nodes that fit the pattern expire after that time, whatever the
+    // configuration says, on links that are not in use yet. The last call that fits holds. Any thread.
+    void SetExpiry(const std::string &node, const std::string &queue, std::chrono::milliseconds expire);
+
     // True if messages for that node wait here.
     bool HasPending(const std::string &node) const;
     // The node is remembered no longer. Gateway's thread only.
@@ -217,6 +221,7 @@ private:
     RabitHandlerThread *const _handlers;
 
     mutable std::mutex _mutex;
+    std::vector<SendRule> _expiries;                       // guarded; the last one first
     IncomingQueues _incoming;                              // guarded, but for Decode
     std::unordered_map<std::uint64_t, Receipt> _receipts;  // of messages without an outcome, by their ids
     std::vector<std::pair<Receipt, QueueOutcome>> _settled;

@@ -56,7 +56,7 @@ def check_dependencies(packages):
         sys.exit("librabit-dev does not ask for the generator of its own version")
     if "cyclonedds-tools" not in field(packages["rabit-tools"], "Depends"):
         sys.exit("rabit-tools does not ask for idlc")
-    for name in ("rabit-tools", "rabit-ground-station"):
+    for name in ("rabit-tools", "rabit-ground-station", "python3-rabit"):
         if name in packages and "libstdc++6" not in field(packages[name], "Depends"):
             sys.exit(f"{name} does not say what libraries it needs")
     print("ok: dependencies")
@@ -76,6 +76,10 @@ def main():
         if "rabit-ground-station" in packages:
             consumer.run(usr / "bin/rabit-ground", "--config", usr / "share/rabit/ground.yaml", "--check")
             print("ok: the ground station starts")
+        if "python3-rabit" in packages:
+            consumer.run("/usr/bin/env", f"PYTHONPATH={usr / 'lib/python3/dist-packages'}", "/usr/bin/python3", "-c",
+                         "import rabit; print(rabit.__version__, rabit.transports())")
+            print("ok: the Python package is imported")
         consumer.build_template(cmake, folder, usr)
 
 

@@ -358,6 +358,43 @@ TEST_F(ExplorerTest, AnEarlierSubscriptionGoesOnWhenOneIsAdded)
     EXPECT_TRUE(receivedPose->FetchMessage());
 }
 
+TEST_F(ExplorerTest, ASecondSubscriptionOfAMessageAddsItsNodes)
+{
+    SimulatedNode &other = fleet.Add(AircraftConfig("uav2"));
+    const auto first = uav.Register<Uav::MissionState>("MissionState");
+    const auto second = other.Register<Uav::MissionState>("MissionState");
+    first->PostMessage();
+    second->PostMessage();
+    FleetExplorer &explorer = AddTool();
+    const auto fromFirst = tool->Register<Uav::MissionState>("uav1/MissionState");
+    const auto fromSecond = tool->Register<Uav::MissionState>("uav2/MissionState");
+    explorer.Subscribe({.Message = "MissionState", .Type = "Uav::MissionState", .From = {"uav1"}});
+    fleet.RunFor(5s);
+    EXPECT_TRUE(fromFirst->FetchMessage());
+    ASSERT_FALSE(fromSecond->WasPosted());
+    explorer.Subscribe({.Message = "MissionState", .Type = "Uav::MissionState", .From = {"uav2"}});
+    fleet.RunFor(5s);
+    EXPECT_TRUE(fromSecond->WasPosted() || fromSecond->FetchMessage());
+    first->PostMessage();
+    fleet.RunFor(2s);
+    EXPECT_TRUE(fromFirst->FetchMessage());
+}
+
+TEST_F(ExplorerTest, MessagesExpireAfterTheTimeThatWasSetForTheirQueue)
+{
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    fleet.RunFor(5s);
+    ground.Manager->Explorer().SetExpiry("uav?", "MissionControl", 2s);
+    SimulatedFaults nothing;
+    nothing.Loss = 1.0;
+    fleet.Network.SetFaults("ground", "uav1", nothing);
+    const auto receipt = std::make_shared<RabitQueueReceipt>();
+    ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>(), receipt);
+    fleet.RunFor(1s);
+    EXPECT_EQ(receipt->Outcome(), QueueOutcome::Pending);
+    EXPECT_TRUE(fleet.RunUntil([&] { return receipt->Outcome() != QueueOutcome::Pending; }, 30s));
+}
+
 TEST_F(ExplorerTest, ASubscriptionToATypeThatIsNotThereIsAMistakeOfTheCaller)
 {
     FleetExplorer &explorer = AddTool();

@@ -78,14 +78,15 @@ void MakeClass(Codec &codec)
     for (Codec::Field &field : codec.Fields)
     {
         const py::object name = classes.attr("python_name")(field.Part.Name);
-        field.Name = py::reinterpret_steal<py::object>(PyUnicode_InternFromString(py::cast<std::string>(name).c_str()))
-                         .release();
+        field.Name =
+            py::reinterpret_steal<py::object>(PyUnicode_InternFromString(py::cast<std::string>(name).c_str()))
+                .release();
         names.append(field.Name);
     }
-    const char *maker = codec.Shape.What == Kind::Struct   ? "make_struct"
-                        : codec.Shape.What == Kind::Union  ? "make_union"
-                        : codec.Shape.What == Kind::Enum   ? "make_enum"
-                                                           : "make_bitmask";
+    const char *maker = codec.Shape.What == Kind::Struct  ? "make_struct"
+                        : codec.Shape.What == Kind::Union ? "make_union"
+                        : codec.Shape.What == Kind::Enum  ? "make_enum"
+                                                          : "make_bitmask";
     codec.Class = py::object(classes.attr(maker)(codec.Shape.Name, names)).release();
     if (codec.Shape.What == Kind::Struct)
     {
@@ -170,14 +171,21 @@ std::shared_ptr<MessageClass> ClassOf(const std::shared_ptr<const DynamicType> &
         throw py::value_error("another definition of " + type->Name() +
                               " is in use in this process; a name has one definition until the process ends");
     }
+    const auto message = ClassOfRecorded(type);
+    message->Registered = registered;
+    return message;
+}
+
+std::shared_ptr<MessageClass> ClassOfRecorded(const std::shared_ptr<const DynamicType> &type)
+{
     Known &known = Everything();
     const Codec *codec = CodecFor(type->Root());
     auto &message = known.Messages[codec];
     if (!message)
     {
-        message = std::make_shared<MessageClass>(MessageClass{type, registered, codec});
+        message = std::make_shared<MessageClass>(MessageClass{type, type.get(), codec});
+        known.Kept.push_back(type);
     }
-    known.Kept.push_back(type);
     return message;
 }
 
@@ -220,8 +228,9 @@ const Codec *CodecOf(PyTypeObject *type)
 
 std::shared_ptr<MessageClass> ClassOf(py::handle valueOrClass)
 {
-    PyTypeObject *type = PyType_Check(valueOrClass.ptr()) ? reinterpret_cast<PyTypeObject *>(valueOrClass.ptr())
-                                                          : Py_TYPE(valueOrClass.ptr());
+    PyTypeObject *type = PyType_Check(valueOrClass.ptr())
+                             ? reinterpret_cast<PyTypeObject *>(valueOrClass.ptr())
+                             : Py_TYPE(valueOrClass.ptr());
     const Codec *codec = CodecOf(type);
     const auto found = Everything().Messages.find(codec);
     return found == Everything().Messages.end() ? nullptr : found->second;

@@ -53,6 +53,8 @@ struct MessageClass
 // The class of a type; made once for each definition. Registers the type. Throws py::value_error if another
 // definition of that name is registered.
 std::shared_ptr<MessageClass> ClassOf(const std::shared_ptr<const DynamicType> &type);
+// The same of a type from a recording: it is not registered, so any number of definitions may have one name.
+std::shared_ptr<MessageClass> ClassOfRecorded(const std::shared_ptr<const DynamicType> &type);
 // The class of a registered type, also of generated code. Throws py::key_error, with the nearest name.
 std::shared_ptr<MessageClass> ClassOf(const std::string &typeName);
 // The same of a value or of its class; null: it is no message.

@@ -29,7 +29,8 @@ public:
             case Kind::Char:
             {
                 const auto letter = static_cast<Py_UCS4>(Take<std::uint8_t>());
-                return py::reinterpret_steal<py::object>(PyUnicode_FromKindAndData(PyUnicode_4BYTE_KIND, &letter, 1));
+                return py::reinterpret_steal<py::object>(
+                    PyUnicode_FromKindAndData(PyUnicode_4BYTE_KIND, &letter, 1));
             }
             case Kind::Octet:
             case Kind::Uint8:
@@ -171,7 +172,8 @@ private:
         {
             auto *words = new std::vector<std::uint64_t>((_body.size() + 7) / 8);
             std::memcpy(words->data(), _body.data(), _body.size());
-            _owner = py::capsule(words, [](void *all) { delete static_cast<std::vector<std::uint64_t> *>(all); });
+            _owner =
+                py::capsule(words, [](void *all) { delete static_cast<std::vector<std::uint64_t> *>(all); });
             _copy = reinterpret_cast<const std::uint8_t *>(words->data());
         }
         return _copy;

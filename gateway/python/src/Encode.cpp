@@ -3,7 +3,6 @@
 
 #include <pybind11/numpy.h>
 
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -254,8 +253,8 @@ private:
     {
         if (shape.What == Kind::Array && length != shape.Length)
         {
-            throw py::value_error(_path + ": expected " + std::to_string(shape.Length) + " " + what + ", not " +
-                                  std::to_string(length));
+            throw py::value_error(_path + ": expected " + std::to_string(shape.Length) + " " + what +
+                                  ", not " + std::to_string(length));
         }
         if (shape.Bound != 0 && length > shape.Bound)
         {
@@ -330,7 +329,8 @@ private:
         if (array.size() > 0)
         {
             _out.Align(number->Shape.Size);
-            _out.PutBytes({static_cast<const std::uint8_t *>(array.data()), static_cast<std::size_t>(array.nbytes())});
+            _out.PutBytes(
+                {static_cast<const std::uint8_t *>(array.data()), static_cast<std::size_t>(array.nbytes())});
         }
         return true;
     }
@@ -394,7 +394,8 @@ private:
             for (const Codec::Field &field : codec.Fields)
             {
                 const Step step(_path, "." + field.Part.Name);
-                const auto member = py::reinterpret_steal<py::object>(PyObject_GetAttr(value.ptr(), field.Name.ptr()));
+                const auto member =
+                    py::reinterpret_steal<py::object>(PyObject_GetAttr(value.ptr(), field.Name.ptr()));
                 if (!member)
                 {
                     throw py::error_already_set();
@@ -510,7 +511,8 @@ const Codec::Field &FieldOrThrow(const Codec &codec, py::handle name)
         names.push_back(py::cast<std::string>(field.Name));
     }
     const auto word = py::cast<std::string>(name);
-    throw py::attribute_error(codec.Shape.Name + " has no member `" + word + "`" + NearestWordHint(word, names));
+    throw py::attribute_error(codec.Shape.Name + " has no member `" + word + "`" +
+                              NearestWordHint(word, names));
 }
 
 }  // namespace
@@ -538,13 +540,13 @@ std::shared_ptr<RabitMessage> MessageOf(const MessageClass &type, py::handle val
     return message;
 }
 
-void Init(py::handle self, const py::args &given, const py::kwargs &named)
+void Init(py::handle self, const py::tuple &given, const py::dict &named)
 {
     const Codec &codec = CodecOrThrow(self);
     if (given.size() > codec.Fields.size())
     {
-        throw py::type_error(codec.Shape.Name + " has " + std::to_string(codec.Fields.size()) + " members, not " +
-                             std::to_string(given.size()));
+        throw py::type_error(codec.Shape.Name + " has " + std::to_string(codec.Fields.size()) +
+                             " members, not " + std::to_string(given.size()));
     }
     for (std::size_t i = 0; i < codec.Fields.size(); ++i)
     {

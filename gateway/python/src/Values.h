@@ -30,7 +30,7 @@ std::shared_ptr<RabitMessage> MessageOf(const MessageClass &type, py::handle val
 void Assign(const MessageClass &type, py::handle value, RabitMessage &message);
 
 // Sets the members of a new value: those that are given, in order or by name, and the defaults.
-void Init(py::handle self, const py::args &given, const py::kwargs &named);
+void Init(py::handle self, const py::tuple &given, const py::dict &named);
 // Sets a member to a value, which it converts to the member's type.
 void SetMember(py::handle self, py::handle name, py::handle value);
 

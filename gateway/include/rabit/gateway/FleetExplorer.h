@@ -108,8 +108,15 @@ public:
     virtual std::optional<std::map<std::string, Subscribers>> FoundSubscribers() const = 0;
 
     // Subscribes as if the rule stood in the configuration. Its type must be in the MessageTypeRegistry
-    // (std::invalid_argument if not). A message that is subscribed to already stays as it is.
+    // (std::invalid_argument if not). A message that is subscribed to already is then read from the nodes of
+    // this rule, too, if it names the same type; for the rest its rule stays as it is.
     virtual void Subscribe(const SubscribeRule &rule) = 0;
+
+    // Has messages for that queue expire after that time, whatever the configuration says; 0: never. `node`
+    // is a name or a pattern. Holds for links that carried no message so far: all messages of a link live
+    // equally long.
+    virtual void SetExpiry(const std::string &node, const std::string &queue,
+                           std::chrono::milliseconds expire) = 0;
 
     // Waits until the gateway has taken all that was posted before this call, but no longer than the limit.
     // Returns whether it has. A taken value, or a newer one in its place, is sent when a budget allows it.

@@ -23,6 +23,11 @@ using TypeCheck = std::function<std::string(const std::string &type)>;
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride,
                                 const TypeCheck &whyNoType);
 
+// The same of a text in the form of such a file. `name` stands in errors in place of the file's; empty: errors
+// name no place.
+GatewayConfig ParseGatewayConfig(const std::string &text, const std::string &name,
+                                 const std::string &nodeOverride = "");
+
 // The same for a program that is another node in that network, perhaps one that knows none of the types: the
 // sections publish, subscribe, accept, send and foreign of the file are ignored.
 GatewayConfig LoadNetworkConfig(const std::string &file);

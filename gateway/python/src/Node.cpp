@@ -1,0 +1,381 @@
+#include "Node.h"
+
+#include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/GatewayManager.h>
+#include <rabit/idl/NearestWord.h>
+#include <rabit/recording/RecorderManager.h>
+#include <rabit/transport/TransportFactory.h>
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+
+#include "ReasonTap.h"
+#include "Values.h"
+#include "names/NamePattern.h"
+
+namespace Rabit::Python
+{
+
+Node::Node(GatewayConfig config)
+    : _config(std::move(config)), _process(getpid()), _parts(std::make_unique<Parts>())
+{
+}
+
+Node::~Node()
+{
+    if (getpid() != _process)
+    {
+        static_cast<void>(_parts.release());  // its threads are in the other process
+        return;
+    }
+    Stop();
+}
+
+Node::Parts &Node::Use()
+{
+    if (getpid() != _process)
+    {
+        throw std::runtime_error(
+            "the node `" + Name() +
+            "` lives in the process that made it; a forked process makes nodes of its own");
+    }
+    if (!_parts)
+    {
+        throw std::runtime_error("the node `" + Name() + "` was stopped; a node runs once, make another one");
+    }
+    return *_parts;
+}
+
+FleetExplorer &Node::UseNetwork()
+{
+    Parts &parts = Use();
+    if (parts.Explorer == nullptr)
+    {
+        throw std::runtime_error("the node `" + Name() + "` does not run yet: use it in a `with` block");
+    }
+    return *parts.Explorer;
+}
+
+RabitWorkspace &Node::Workspace()
+{
+    return Use().Workspace;
+}
+
+std::shared_ptr<InboundQueue> Node::AddQueue(const std::string &name, int capacity)
+{
+    auto queue = std::make_shared<InboundQueue>(name, capacity);
+    Parts &parts = Use();
+    parts.Workspace.AddManagerMessageQueue(name, queue->Local());
+    parts.Queues.push_back(queue);
+    return queue;
+}
+
+PythonManager &Node::AddManager(const std::string &name, py::object object, double period)
+{
+    Parts &parts = Use();
+    if (_isRunning)
+    {
+        throw std::runtime_error("managers are added before the node starts");
+    }
+    auto manager = std::make_unique<PythonManager>(name, parts.Workspace, std::move(object), period);
+    PythonManager &added = *manager;
+    parts.Reactor->AddManager(std::move(manager));
+    return added;
+}
+
+void *LoadLibrary(const std::string &path)
+{
+    // The library uses the code that is in this module, and not a copy of its own: so both know the same
+    // types.
+    Dl_info self{};
+    if (dladdr(reinterpret_cast<void *>(&LoadLibrary), &self) == 0 ||
+        dlopen(self.dli_fname, RTLD_NOW | RTLD_NOLOAD | RTLD_GLOBAL) == nullptr)
+    {
+        throw std::runtime_error(std::string("the module cannot be shared: ") + dlerror());
+    }
+    // Never closed: its managers and types may live until the process ends.
+    void *library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr)
+    {
+        throw std::runtime_error(std::string("the library cannot be loaded: ") + dlerror());
+    }
+    return library;
+}
+
+void Node::AddLibrary(const std::string &path)
+{
+    using AddManagers = void (*)(RabitReactor &, GatewayConfig &, RabitWorkspace &);
+    Parts &parts = Use();
+    void *library = LoadLibrary(path);
+    const auto add = reinterpret_cast<AddManagers>(dlsym(library, "rabit_add_managers"));
+    if (add == nullptr)
+    {
+        throw std::runtime_error(path + ": has no function rabit_add_managers");
+    }
+    const py::gil_scoped_release released;
+    add(*parts.Reactor, _config, parts.Workspace);
+}
+
+void Node::Start()
+{
+    Parts &parts = Use();
+    if (_isRunning)
+    {
+        throw std::runtime_error("the node `" + Name() + "` runs already");
+    }
+    const py::gil_scoped_release released;
+    ValidateTransportName(_config, AvailableTransports(), KnownTransports());
+    if (_config.Record)
+    {
+        parts.Reactor->AddManager(std::make_unique<RecorderManager>(_config, parts.Workspace));
+    }
+    _config.Tap = std::make_shared<ReasonTap>(_config.Tap);
+    auto gateway =
+        std::make_unique<GatewayManager>(_config, MakeTransport(_config.Transport), parts.Workspace);
+    parts.Explorer = &gateway->Explorer();
+    parts.Explorer->SetOnChange([&parts] { AttachAll(parts); });
+    parts.Reactor->AddManager(std::move(gateway));
+    parts.Workspace.AddPublishSubscribeMessage(FleetMessageNameOf(_config), parts.Fleet);
+    parts.Reactor->SetHandleSignals(false);
+    parts.Runner = std::thread([&parts] { parts.Reactor->Run(); });
+    _isRunning = true;
+}
+
+void Node::Stop()
+{
+    if (!_parts || getpid() != _process)
+    {
+        return;
+    }
+    _isRunning = false;
+    const std::unique_ptr<Parts> parts = std::move(_parts);
+    {
+        const std::lock_guard lock(parts->Mutex);
+        for (const auto &weak : parts->Subscriptions)
+        {
+            if (const auto subscription = weak.lock())
+            {
+                subscription->Close();
+            }
+        }
+        parts->Subscriptions.clear();
+    }
+    for (const auto &queue : parts->Queues)
+    {
+        queue->Close();
+    }
+    // Managers may wait for the GIL, and end with it.
+    const py::gil_scoped_release released;
+    parts->Reactor->ShutdownAllManagers();
+    if (parts->Runner.joinable())
+    {
+        parts->Runner.join();
+    }
+    parts->Posted.clear();
+    parts->Reactor.reset();
+}
+
+void Node::AttachAll(Parts &parts)
+{
+    std::vector<std::shared_ptr<Subscription>> open;
+    {
+        const std::lock_guard lock(parts.Mutex);
+        std::erase_if(parts.Subscriptions, [](const auto &weak) { return weak.expired(); });
+        for (const auto &weak : parts.Subscriptions)
+        {
+            if (auto subscription = weak.lock(); subscription && !subscription->Pattern().empty())
+            {
+                open.push_back(std::move(subscription));
+            }
+        }
+    }
+    if (open.empty())
+    {
+        return;
+    }
+    for (const FleetExplorer::Node &node : parts.Explorer->Nodes())
+    {
+        for (const auto &subscription : open)
+        {
+            if (node.Offers && MatchesPattern(subscription->Pattern(), node.Name) &&
+                std::any_of(node.Offers->publishes.begin(), node.Offers->publishes.end(),
+                            [&](const auto &offer) { return offer.message == subscription->Message(); }))
+            {
+                static_cast<void>(subscription->Attach(node.Name));  // the gateway reports another type
+            }
+        }
+    }
+}
+
+bool Node::IsForeign(const std::string &name) const
+{
+    return name.find('/') == std::string::npos || name == FleetMessageNameOf(_config) ||
+           std::any_of(_config.Foreign.begin(), _config.Foreign.end(),
+                       [&name](const ForeignRule &rule) { return rule.Local == name; });
+}
+
+std::shared_ptr<Subscription> Node::Subscribe(const std::string &pattern, const std::string &message,
+                                              std::shared_ptr<MessageClass> type)
+{
+    FleetExplorer &explorer = UseNetwork();
+    const std::string whole = pattern.empty() ? message : pattern + "/" + message;
+    const bool isLocal = IsForeign(whole) || pattern == Name();
+    auto subscription = std::make_shared<Subscription>(_parts->Workspace, isLocal ? "" : pattern,
+                                                       isLocal && pattern != Name() ? whole : message, type);
+    const bool isOneNode = isLocal || IsNodeName(pattern);
+    if (!isLocal && !IsNodePattern(pattern))
+    {
+        throw py::value_error("`" + pattern + "` is no node name or pattern");
+    }
+    if (const std::string problem = isOneNode ? subscription->Attach(isLocal ? "" : pattern) : "";
+        !problem.empty())
+    {
+        throw py::type_error(problem);
+    }
+    if (!isLocal)
+    {
+        explorer.Subscribe({.Message = message, .Type = type->Name(), .From = {pattern}});
+    }
+    {
+        const std::lock_guard lock(_parts->Mutex);
+        _parts->Subscriptions.push_back(subscription);
+    }
+    AttachAll(*_parts);
+    return subscription;
+}
+
+void Node::Unsubscribe(const std::shared_ptr<Subscription> &subscription)
+{
+    subscription->Close();
+}
+
+void Node::Post(const std::string &name, py::handle value)
+{
+    Parts &parts = Use();
+    const std::shared_ptr<MessageClass> type = ClassOf(value);
+    if (!type)
+    {
+        throw py::type_error("post " + name + ": expected a message, not " +
+                             py::cast<std::string>(py::repr(value)));
+    }
+    auto &[known, message] = parts.Posted[name];
+    if (!message)
+    {
+        const auto rule = std::find_if(_config.Publish.begin(), _config.Publish.end(),
+                                       [&name](const PublishRule &one) { return one.Message == name; });
+        auto made = type->Registered->CreateShared();
+        if ((rule != _config.Publish.end() && rule->Type != type->Name()) ||
+            !parts.Workspace.AddPublishSubscribeMessage(name, made))
+        {
+            parts.Posted.erase(name);
+            throw py::type_error("post " + name + ": the message is of another type than " + type->Name());
+        }
+        known = type;
+        message = made;
+    }
+    if (known != type)
+    {
+        throw py::type_error("post " + name + ": expected a " + known->Name() + ", not a " + type->Name());
+    }
+    Assign(*type, value, *message);
+    // With the GIL: two threads must not post one message at once, and handlers here only wake.
+    message->PostMessage();
+}
+
+std::shared_ptr<Receipt> Node::Send(const std::string &address, py::handle value,
+                                    std::optional<double> expire)
+{
+    Parts &parts = Use();
+    const std::shared_ptr<MessageClass> type = ClassOf(value);
+    if (!type)
+    {
+        throw py::type_error("send " + address + ": expected a message, not " +
+                             py::cast<std::string>(py::repr(value)));
+    }
+    if (expire)
+    {
+        SetExpiry(address, *expire);
+    }
+    const std::shared_ptr<RabitMessage> message = MessageOf(*type, value);
+    auto receipt = std::make_shared<Receipt>(_nextReceipt++, address, _outcomes);
+    const py::gil_scoped_release released;
+    ReasonTap::Last().clear();
+    if (!parts.Workspace.AddMessageToQueue(address, message, receipt->Local()))
+    {
+        receipt->Reason = ReasonTap::Last();
+        if (receipt->Reason.empty())
+        {
+            const auto queue = parts.Workspace.FindQueue(address);
+            receipt->Reason = queue ? "the queue is full" : "there is no queue `" + address + "`";
+        }
+    }
+    return receipt;
+}
+
+void Node::SetExpiry(const std::string &address, double seconds)
+{
+    const std::size_t slash = address.find('/');
+    if (slash == std::string::npos)
+    {
+        return;  // a queue here has the message at once
+    }
+    if (!(seconds > 0 && seconds <= 365 * 86400.0))
+    {
+        throw py::value_error("expire: expected seconds, more than 0 and up to a year, not " +
+                              std::to_string(seconds));
+    }
+    const auto [known, isNew] = _parts->Expires.emplace(address, seconds);
+    if (!isNew && known->second != seconds)
+    {
+        throw py::value_error("messages to " + address + " expire after " + std::to_string(known->second) +
+                              " s, as the first one did; all messages to one queue live equally long");
+    }
+    if (isNew)
+    {
+        UseNetwork().SetExpiry(
+            address.substr(0, slash), address.substr(slash + 1),
+            std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000 * seconds))));
+    }
+}
+
+Gateway::Fleet Node::Fleet()
+{
+    UseNetwork();
+    _parts->Fleet->FetchMessage();
+    return *_parts->Fleet;
+}
+
+bool Node::Flush(double seconds)
+{
+    FleetExplorer &explorer = UseNetwork();
+    const py::gil_scoped_release released;
+    return explorer.WaitUntilTaken(
+        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
+}
+
+std::vector<std::string> Node::Messages()
+{
+    std::set<std::string> names;
+    for (const MessageInfo &info : Use().Workspace.GetListOfMessages())
+    {
+        names.insert(info.Name);
+    }
+    for (const FleetExplorer::Node &node : UseNetwork().Nodes())
+    {
+        if (node.Offers)
+        {
+            for (const auto &offer : node.Offers->publishes)
+            {
+                names.insert(node.Name + "/" + offer.message);
+            }
+        }
+    }
+    return {names.begin(), names.end()};
+}
+
+}  // namespace Rabit::Python

@@ -1,0 +1,47 @@
+#include "PythonManager.h"
+
+#include <stdexcept>
+
+namespace Rabit::Python
+{
+
+namespace py = pybind11;
+
+PythonManager::PythonManager(std::string name, RabitWorkspace &workspace, py::object object, double period)
+    : RabitManager(std::move(name), workspace), _object(std::move(object))
+{
+    if (period > 0)
+    {
+        SetPeriodSec(period);
+        SetWakeupBetweenTurns(true);
+    }
+}
+
+PythonManager::~PythonManager()
+{
+    const py::gil_scoped_acquire gil;
+    _object = py::object();
+}
+
+void PythonManager::Call(const char *function)
+{
+    const py::gil_scoped_acquire gil;
+    std::string problem;
+    try
+    {
+        _object.attr(function)();
+        return;
+    }
+    catch (py::error_already_set &error)
+    {
+        py::module_::import("rabit._log")
+            .attr("exception")("manager " + GetManagerName() + ": " + function, error.type(), error.value(),
+                               error.trace());
+        // The text is taken while the GIL is held: the exception of Python must not outlive it here.
+        problem = py::cast<std::string>(error.type().attr("__name__")) + ": " +
+                  py::cast<std::string>(py::str(error.value()));
+    }
+    throw std::runtime_error(problem);
+}
+
+}  // namespace Rabit::Python

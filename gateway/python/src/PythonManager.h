@@ -1,0 +1,33 @@
+// A manager whose unit of work is written in Python.
+#pragma once
+
+#include <rabit/RabitManager.h>
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <vector>
+
+namespace Rabit::Python
+{
+
+// Calls startup, unit_of_work and shutdown of an object of Python, on the manager's own thread, with the GIL.
+// An exception is logged there with its traceback, and told in the manager's status as of any manager.
+class PythonManager final : public RabitManager
+{
+public:
+    // With the GIL. `period`: seconds; 0: none.
+    PythonManager(std::string name, RabitWorkspace &workspace, pybind11::object object, double period);
+    ~PythonManager() override;
+
+    void Startup() override { Call("startup"); }
+    void ExecuteUnitOfWork() override { Call("unit_of_work"); }
+    void Shutdown() override { Call("shutdown"); }
+
+private:
+    void Call(const char *function);
+
+    pybind11::object _object;
+};
+
+}  // namespace Rabit::Python

@@ -1,0 +1,39 @@
+"""Nodes on loopback, and the classes of the example's IDL file."""
+
+import itertools
+import os
+import pathlib
+import time
+
+import pytest
+
+import rabit
+
+ROOT = pathlib.Path(__file__).resolve().parents[3]
+DOMAINS = itertools.count(100 + os.getpid() % 100)
+
+
+@pytest.fixture(scope="session")
+def idl():
+    return rabit.load_idl(ROOT / "idl/messages/uav.idl")
+
+
+@pytest.fixture(params=rabit.transports())
+def network(request):
+    """Settings of nodes that hear each other and nobody else."""
+    return {"domain": next(DOMAINS), "transport": request.param, "interfaces": ["127.0.0.1"]}
+
+
+@pytest.fixture
+def one_network():
+    """The same of one transport, for what does not depend on it."""
+    return {"domain": next(DOMAINS), "transport": rabit.transports()[0], "interfaces": ["127.0.0.1"]}
+
+
+def wait_until(holds, seconds=30.0):
+    """Returns what `holds` returns once that is true."""
+    end = time.monotonic() + seconds
+    while not (result := holds()):
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.01)
+    return result

@@ -1,0 +1,81 @@
+"""Recordings of Python nodes: read, put on one time line, as tables."""
+
+import time
+
+import pytest
+
+import rabit
+from conftest import wait_until
+
+
+@pytest.fixture(scope="module")
+def flight(tmp_path_factory, idl):
+    """Two aircraft that hear each other and a command, recorded by both."""
+    folder = tmp_path_factory.mktemp("flight")
+    network = {"domain": 230, "transport": rabit.transports()[0], "interfaces": ["127.0.0.1"],
+               "publish": {"Pose": idl.Uav.Pose}, "accept": {"MissionControl": [idl.Uav.Goto]},
+               "record": {"folder": str(folder)}}
+    uav1, uav2 = (rabit.Node(name, **network) for name in ("uav1", "uav2"))
+    with uav1, uav2:
+        poses = uav2.subscribe("uav1/Pose", idl.Uav.Pose)
+        for number in range(1, 11):
+            uav1.post("Pose", idl.Uav.Pose(altitude_m=100 + number, number=number))
+            assert poses.get(timeout=30).value.number == number
+            # A recorder looks for new names ten times a second.
+            time.sleep(0.15 if number == 1 else 0.01)
+        wait_until(lambda: uav2.send("uav1/MissionControl", idl.Uav.Goto(id=7)).outcome is not rabit.Outcome.REFUSED)
+        uav1.queue("MissionControl").get(timeout=30)
+        time.sleep(1.5)
+    return folder
+
+
+def test_a_recording_gives_decoded_values(flight, idl):
+    recording = rabit.open(next(flight.glob("uav1*.mcap")))
+    poses = list(recording.messages("uav1/Pose"))
+    assert [pose.value.number for pose in poses] == list(range(1, 11))
+    assert all(isinstance(pose.value, idl.Uav.Pose) and 0 <= pose.age < 1 for pose in poses)
+    assert {topic.name: topic.type for topic in recording.topics}["uav1/Pose"] == "Uav::Pose"
+    (command,) = recording.messages("uav1/Recorder/received/*")
+    assert command.value == idl.Uav.Goto(id=7)
+    assert any(isinstance(message.value, dict) for message in recording)
+    begin, end = recording.span
+    assert begin < poses[0].log_time < end
+    assert list(recording.messages("uav1/Pose", start=poses[5].log_time))[0] == poses[5]
+
+
+def test_an_unknown_topic_is_named_with_the_nearest(flight):
+    recording = rabit.open(next(flight.glob("uav1*.mcap")))
+    with pytest.raises(KeyError, match="no topic `uav1/Poze`; did you mean `uav1/Pose`"):
+        list(recording.messages("uav1/Poze"))
+
+
+def test_a_topic_is_a_table(flight):
+    pytest.importorskip("pandas")
+    table = rabit.open(next(flight.glob("uav1*.mcap"))).to_pandas("uav1/Pose")
+    assert table["altitude_m"].tolist() == [100.0 + number for number in range(1, 11)]
+    assert str(table.index.dtype) == "datetime64[ns, UTC]" and table.index.is_monotonic_increasing
+
+
+def test_recordings_of_several_nodes_are_on_one_time_line(flight):
+    recording = rabit.open(flight)
+    names = {topic.name for topic in recording.topics}
+    assert {"uav1/Pose", "uav2/Recorder/knew/uav1/Pose"} <= names
+    times = [message.log_time for message in recording]
+    assert times == sorted(times)
+    pytest.importorskip("pandas")
+    assert set(recording.to_pandas("uav*/Pose")["topic"]) == {"uav1/Pose"}
+
+
+def test_what_is_no_recording_is_one_line(tmp_path):
+    (tmp_path / "x.mcap").write_bytes(b"no")
+    with pytest.raises(RuntimeError, match="is no recording"):
+        rabit.open(tmp_path / "x.mcap")
+    with pytest.raises(RuntimeError, match="none.mcap"):
+        rabit.open(tmp_path / "none.mcap")
+    with pytest.raises(FileNotFoundError, match="there is no recording"):
+        rabit.open(_empty(tmp_path))
+
+
+def _empty(folder):
+    (folder / "empty").mkdir()
+    return folder / "empty"
