@@ -73,6 +73,7 @@ bool EncodeByType(const MessageType &type, const RabitMessage &message, Mcap::By
 MessageTaps::MessageTaps(const GatewayConfig &config, RabitWorkspace &workspace,
                          std::shared_ptr<RecordingTarget> target)
     : _config(config),
+      _subscriptions(config.Subscribe),
       _workspace(workspace),
       _target(std::move(target)),
       _managers(_target->Inbox().AddStream(JsonStreams::Managers(config.Node)))
@@ -118,6 +119,12 @@ bool MessageTaps::IsWanted(const std::string &name) const
     return MatchesAny(_config.Record->Messages, name) && !MatchesAny(_config.Record->Except, name);
 }
 
+void MessageTaps::AddSubscription(const SubscribeRule &rule)
+{
+    const std::lock_guard lock(_mutex);
+    _subscriptions.push_back(rule);
+}
+
 MessageTaps::Origin MessageTaps::OriginOf(const std::string &name) const
 {
     const std::size_t slash = name.find('/');
@@ -125,10 +132,11 @@ MessageTaps::Origin MessageTaps::OriginOf(const std::string &name) const
     {
         const std::string node = name.substr(0, slash);
         const std::string message = name.substr(slash + 1);
-        const auto rule = std::find_if(_config.Subscribe.begin(), _config.Subscribe.end(),
+        const std::lock_guard lock(_mutex);
+        const auto rule = std::find_if(_subscriptions.begin(), _subscriptions.end(),
                                        [&](const SubscribeRule &one)
                                        { return one.Message == message && MatchesAny(one.From, node); });
-        if (rule != _config.Subscribe.end())
+        if (rule != _subscriptions.end())
         {
             return {node, message, true, rule->Qos != QosProfile::Telemetry,
                     rule->Qos ? WordOf(*rule->Qos) : ""};

@@ -5,7 +5,9 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
 #include <string>
+#include <vector>
 
 #include "recording/MessageTap.h"
 
@@ -22,6 +24,8 @@ public:
     ~MessageTaps();
     // Begins to record new messages, and counts missed posts.
     void Look();
+    // Messages that fit the rule are other nodes', as those of the configuration's rules. Any thread.
+    void AddSubscription(const SubscribeRule &rule);
 
 private:
     bool IsWanted(const std::string &name) const;
@@ -40,6 +44,8 @@ private:
     std::shared_ptr<MessageTap> TapManager(const std::shared_ptr<PublishSubscribeMessage> &global);
 
     const GatewayConfig &_config;
+    mutable std::mutex _mutex;
+    std::vector<SubscribeRule> _subscriptions;  // guarded; of the configuration, and added ones
     RabitWorkspace &_workspace;
     const std::shared_ptr<RecordingTarget> _target;
     struct Known

@@ -136,6 +136,7 @@ public:
             }
         }
     }
+    void AddSubscription(const SubscribeRule &rule) { _taps.AddSubscription(rule); }
     void Happened(const std::string &what) { _target->Happened(what); }
 
 private:
@@ -176,6 +177,11 @@ void RecorderManager::Startup()
 void RecorderManager::ExecuteUnitOfWork()
 {
     _parts->Look();
+}
+
+void RecorderManager::AddSubscription(const SubscribeRule &rule)
+{
+    _parts->AddSubscription(rule);
 }
 
 void RecorderManager::WriteBlackBox(const std::string &why)

@@ -5,6 +5,8 @@
 #include "dynamic/ShapeBuilder.h"
 #include "model/IdlTextEmitter.h"
 #include "model/Names.h"
+#include "model/SourceComments.h"
+#include "model/SourceScan.h"
 
 #include <nlohmann/json.hpp>
 
@@ -47,9 +49,11 @@ std::string JsonOf(const RabitIdl::Literal &value)
 
 void Take(const RabitIdl::Model &model, IdlFile &loaded)
 {
-    const auto comment = [&loaded](const std::string &name, const std::vector<std::string> &lines)
+    std::map<std::string, RabitIdl::SourceComments> files;
+    const auto comment = [&](const std::string &name, const std::string &file, std::uint32_t line)
     {
-        if (!lines.empty())
+        const auto found = files.try_emplace(file, file).first;
+        if (const auto lines = found->second.About(line); !lines.empty())
         {
             loaded.Comments[name] = Joined(lines);
         }
@@ -57,7 +61,7 @@ void Take(const RabitIdl::Model &model, IdlFile &loaded)
     for (const auto &definition : model.Definitions)
     {
         const std::string name = RabitIdl::ScopedName(definition->Scope, definition->Name);
-        comment(name, definition->Comment);
+        comment(name, definition->File, definition->Line);
         if (const auto *constant = dynamic_cast<const RabitIdl::ConstDefinition *>(definition.get()))
         {
             loaded.Constants.emplace_back(name, JsonOf(constant->Value));
@@ -69,7 +73,10 @@ void Take(const RabitIdl::Model &model, IdlFile &loaded)
         }
         for (const RabitIdl::Member *member : RabitIdl::AllMembers(*structure))
         {
-            comment(name + "." + member->Name, member->Comment);
+            if (member->Line != definition->Line)
+            {
+                comment(name + "." + member->Name, member->File, member->Line);
+            }
         }
         if (RabitIdl::IsMessage(*structure))
         {
@@ -86,8 +93,13 @@ IdlFile IdlFile::Load(const std::string &path, const std::vector<std::string> &f
     IdlFile loaded;
     try
     {
-        loaded.Reason = Dynamic::ReadModel(Dynamic::WithIncludes(path, folders), true,
-                                           [&loaded](const RabitIdl::Model &model) { Take(model, loaded); });
+        const Dynamic::IncludedText text = Dynamic::WithIncludes(path, folders);
+        RabitIdl::Refusals refusals;
+        RefuseWhatIdlcMisreads(text.Paths, refusals);
+        loaded.Reason = refusals.Empty() ? Dynamic::ReadModel(text.Text, true,
+                                                              [&loaded](const RabitIdl::Model &model)
+                                                              { Take(model, loaded); })
+                                         : refusals.First();
     }
     catch (const Dynamic::Refused &refused)
     {

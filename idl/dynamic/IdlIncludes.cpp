@@ -32,7 +32,8 @@ public:
             throw Refused(from + "the files include each other");
         }
         const std::string name = path.string();
-        Mark(1, name, depth == 0 ? "" : " 1");
+        Paths.push_back(name);
+        Mark(1, name);
         std::string line;
         for (std::size_t number = 1; std::getline(file, line); ++number)
         {
@@ -50,7 +51,7 @@ public:
             if (std::regex_match(line, match, include))
             {
                 Include(path, match[1], place, depth);
-                Mark(number + 1, name, " 2");
+                Mark(number + 1, name);
             }
             else if (std::regex_match(line, guard))
             {
@@ -66,11 +67,12 @@ public:
     }
 
     std::ostringstream Text;
+    std::vector<std::string> Paths;
 
 private:
-    void Mark(std::size_t line, const std::string &file, const char *flag)
+    void Mark(std::size_t line, const std::string &file)
     {
-        Text << "# " << line << " \"" << file << '"' << flag << '\n';
+        Text << "#line " << line << " \"" << file << "\"\n";
     }
 
     void Include(const std::filesystem::path &includer, const std::string &name, const std::string &place,
@@ -104,11 +106,11 @@ private:
 
 }  // namespace
 
-std::string WithIncludes(const std::string &path, const std::vector<std::string> &folders)
+IncludedText WithIncludes(const std::string &path, const std::vector<std::string> &folders)
 {
     Includer includer(folders);
     includer.Add(path, "", 0);
-    return includer.Text.str();
+    return {includer.Text.str(), includer.Paths};
 }
 
 }  // namespace Rabit::Dynamic

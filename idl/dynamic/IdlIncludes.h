@@ -7,9 +7,14 @@
 namespace Rabit::Dynamic
 {
 
-// The text, with line markers (`# 12 "uav.idl"`) from which the parser knows the places. A file that is
-// included again is left out. Throws Refused (ShapeBuilder.h), with file and line, for a file that cannot be
-// read and for other directives than IdlFile.h names.
-std::string WithIncludes(const std::string &path, const std::vector<std::string> &folders);
+// The text, with line markers (`#line 12 "uav.idl"`) from which the parser knows the places, and the paths of
+// the files. A file that is included again is left out. Throws Refused (ShapeBuilder.h), with file and line,
+// for a file that cannot be read and for other directives than IdlFile.h names.
+struct IncludedText
+{
+    std::string Text;
+    std::vector<std::string> Paths;
+};
+IncludedText WithIncludes(const std::string &path, const std::vector<std::string> &folders);
 
 }  // namespace Rabit::Dynamic

@@ -132,7 +132,9 @@ void Node::Start()
     ValidateTransportName(_config, AvailableTransports(), KnownTransports());
     if (_config.Record)
     {
-        parts.Reactor->AddManager(std::make_unique<RecorderManager>(_config, parts.Workspace));
+        auto recorder = std::make_unique<RecorderManager>(_config, parts.Workspace);
+        parts.Recorder = recorder.get();
+        parts.Reactor->AddManager(std::move(recorder));
     }
     _config.Tap = std::make_shared<ReasonTap>(_config.Tap);
     auto gateway =
@@ -232,6 +234,11 @@ std::shared_ptr<Subscription> Node::Subscribe(const std::string &pattern, const 
     {
         throw py::value_error("`" + pattern + "` is no node name or pattern");
     }
+    const SubscribeRule rule{.Message = message, .Type = type->Name(), .From = {pattern}};
+    if (!isLocal && _parts->Recorder != nullptr)
+    {
+        _parts->Recorder->AddSubscription(rule);
+    }
     if (const std::string problem = isOneNode ? subscription->Attach(isLocal ? "" : pattern) : "";
         !problem.empty())
     {
@@ -239,7 +246,7 @@ std::shared_ptr<Subscription> Node::Subscribe(const std::string &pattern, const 
     }
     if (!isLocal)
     {
-        explorer.Subscribe({.Message = message, .Type = type->Name(), .From = {pattern}});
+        explorer.Subscribe(rule);
     }
     {
         const std::lock_guard lock(_parts->Mutex);

@@ -23,6 +23,11 @@
 #include "Receipt.h"
 #include "Subscription.h"
 
+namespace Rabit
+{
+class RecorderManager;
+}
+
 namespace Rabit::Python
 {
 
@@ -81,6 +86,7 @@ private:
         std::map<std::string, std::pair<std::shared_ptr<MessageClass>, std::shared_ptr<RabitMessage>>> Posted;
         std::shared_ptr<Gateway::Fleet> Fleet = std::make_shared<Gateway::Fleet>();
         FleetExplorer *Explorer = nullptr;
+        RecorderManager *Recorder = nullptr;  // null: nothing is recorded
         std::thread Runner;
         std::mutex Mutex;
         std::vector<std::weak_ptr<Subscription>> Subscriptions;  // guarded

@@ -53,7 +53,7 @@ def test_the_ground_station_draws_what_it_sees(idl, one_network, tmp_path):
 
 @pytest.mark.skipif(not (BIN / "uav").exists(), reason="the swarm example is not built")
 def test_the_mission_flies_the_swarm_example_and_its_recordings_are_analysed(one_network, tmp_path):
-    common = ["--domain", str(one_network["domain"]), "--transport", "fastdds", "--interface", "127.0.0.1"]
+    common = ["--domain", str(one_network["domain"]), "--transport", "fastdds"]
     swarm = ROOT / "examples/swarm"
     programs = []
     try:
@@ -63,7 +63,7 @@ def test_the_mission_flies_the_swarm_example_and_its_recordings_are_analysed(one
                 programs.append(subprocess.Popen(
                     [BIN / program, "--config", swarm / config, "--world", swarm / "world.yaml", "--node", node, *common,
                      *more], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
-        with start("mission.py", "--idl", IDL, *common, "--aircraft", 2, "--seconds", 60) as mission:
+        with start("mission.py", "--idl", IDL, *common, "--interface", "127.0.0.1", "--aircraft", 2, "--seconds", 60) as mission:
             try:
                 said, _ = mission.communicate(timeout=150)
             finally:

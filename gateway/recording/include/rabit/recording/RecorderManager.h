@@ -36,6 +36,9 @@ public:
     // Ends the file, which also holds what other managers did at their end.
     ~RecorderManager() override;
 
+    // For a program that subscribes while it runs (FleetExplorer::Subscribe), before it does: messages that fit
+    // the rule are recorded as those of other nodes. Any thread.
+    void AddSubscription(const SubscribeRule &rule);
     // Has the black box written now, if there is one; `why` stands in the file. Any thread.
     void WriteBlackBox(const std::string &why);
 
