@@ -31,6 +31,8 @@ public:
         {
             throw Refused(from + "the files include each other");
         }
+        std::error_code error;
+        _seen.insert(std::filesystem::canonical(path, error));
         const std::string name = path.string();
         Paths.push_back(name);
         Mark(1, name);
@@ -91,7 +93,7 @@ private:
             {
                 continue;
             }
-            if (_seen.insert(whole).second)
+            if (_seen.count(whole) == 0)
             {
                 Add(path, place, depth + 1);
             }

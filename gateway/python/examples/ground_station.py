@@ -26,7 +26,7 @@ idl = rabit.load_idl(options.idl)
 figure, axes = plot.subplots()
 end = time.monotonic() + options.seconds
 with rabit.Node("viewer", domain=options.domain, interfaces=options.interface, transport=options.transport) as node:
-    poses = node.subscribe("uav*/Pose", idl.Uav.Pose)
+    poses = node.subscribe("uav?/Pose", idl.Uav.Pose)
     tracks: dict[str, tuple[list[float], list[float]]] = {}
     while time.monotonic() < end:
         axes.clear()

@@ -79,7 +79,7 @@ async def main() -> None:
         accept={"Commands": [idl.Uav.CommandAck]},
     )
     async with node:
-        seen = await aircraft(node.subscribe("uav*/Pose", idl.Uav.Pose), options.aircraft)
+        seen = await aircraft(node.subscribe("uav?/Pose", idl.Uav.Pose), options.aircraft)
         names = sorted(seen)
         middle = seen[names[0]]
         node.post("SearchArea", idl.Uav.SearchArea(
@@ -88,7 +88,7 @@ async def main() -> None:
         await command(node, idl.Uav.Search, names)
         await acknowledged(node, len(names))
         try:
-            findings = node.subscribe("uav*/Findings", idl.Uav.Findings)
+            findings = node.subscribe("uav?/Findings", idl.Uav.Findings)
             await asyncio.wait_for(validated(findings, options.targets), options.seconds)
         except asyncio.TimeoutError:
             print("the time is over", flush=True)

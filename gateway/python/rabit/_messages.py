@@ -123,7 +123,7 @@ def _restored(name: str, idl_text: str, sample: bytes) -> Any:
     return _rabit.decode(_rabit.parse_idl(idl_text, name), sample)
 
 
-# What the extension module calls.
+# The extension module calls the functions below.
 
 
 def python_name(name: str) -> str:

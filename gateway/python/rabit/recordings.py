@@ -78,7 +78,7 @@ class Recording:
         return self.messages()
 
     def messages(self, *topics: str, start: int = 0, end: int = _END) -> Iterator[Recorded]:
-        """Messages of these topics, which may be patterns (`uav*/Pose`); without any, of all. Raises KeyError, with the
+        """Messages of these topics, which may be patterns (`uav?/Pose`; `*` stands for any characters); without any, of all. Raises KeyError, with the
         nearest name, for a topic that is not there."""
         channels: set[int] = set()
         for topic in topics or self._channels:

@@ -58,7 +58,7 @@ GatewayConfig ConfigOf(const std::string &file, const std::string &node, const s
     return config;
 }
 
-// What Python has of a manager. Wake may be called after the node has stopped, the rest not.
+// The handle of a manager for Python. Wake may be called after the node has stopped, the rest not.
 struct ManagerCore
 {
     PythonManager &Manager;

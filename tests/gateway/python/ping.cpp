@@ -1,5 +1,5 @@
-// A library with a type that was generated in C++, and a manager, for nodes of Python: what the same reader costs
-// in C++.
+// A library with a type that was generated in C++, and a manager, for nodes of Python: what the same reader
+// costs in C++.
 #include <rabit/RabitManager.h>
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayConfig.h>
@@ -16,8 +16,8 @@
 namespace
 {
 
-// Notes how late each ping comes. At its end it writes the number of pings and the median in microseconds to the
-// file that PING_RESULT names.
+// Notes how late each ping comes. At its end it writes the number of pings and the median in microseconds to
+// the file that PING_RESULT names.
 class PingReader final : public Rabit::RabitManager
 {
 public:

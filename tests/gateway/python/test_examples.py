@@ -55,14 +55,15 @@ def test_the_ground_station_draws_what_it_sees(idl, one_network, tmp_path):
 def test_the_mission_flies_the_swarm_example_and_its_recordings_are_analysed(one_network, tmp_path):
     common = ["--domain", str(one_network["domain"]), "--transport", "fastdds"]
     swarm = ROOT / "examples/swarm"
+    recorded = tmp_path / "uav.yaml"
+    recorded.write_text((swarm / "uav.yaml").read_text() + f"record: {{folder: {tmp_path}}}\n")
     programs = []
     try:
         for name in ("uav1", "uav2"):
-            for program, config, node in (("uav", "uav.yaml", name), ("vision", "vision.yaml", name + ".vision")):
-                more = ["--record", str(tmp_path)] if program == "uav" else []
+            for program, config, node in (("uav", recorded, name), ("vision", swarm / "vision.yaml", name + ".vision")):
                 programs.append(subprocess.Popen(
-                    [BIN / program, "--config", swarm / config, "--world", swarm / "world.yaml", "--node", node, *common,
-                     *more], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
+                    [BIN / program, "--config", config, "--world", swarm / "world.yaml", "--node", node, *common],
+                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL))
         with start("mission.py", "--idl", IDL, *common, "--interface", "127.0.0.1", "--aircraft", 2, "--seconds", 60) as mission:
             try:
                 said, _ = mission.communicate(timeout=150)

@@ -1,0 +1,94 @@
+#include <rabit/dynamic/IdlFile.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace Rabit
+{
+namespace
+{
+
+using ::testing::EndsWith;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+class IdlFileTest : public ::testing::Test
+{
+protected:
+    IdlFileTest() { std::filesystem::create_directories(folder / "shared"); }
+    ~IdlFileTest() override { std::filesystem::remove_all(folder); }
+
+    std::string Write(const std::string &name, const std::string &text) const
+    {
+        std::ofstream(folder / name) << text;
+        return (folder / name).string();
+    }
+    std::string ReasonOf(const std::string &text) const
+    {
+        const IdlFile file = IdlFile::Load(Write("a.idl", text));
+        EXPECT_THAT(file.Messages, IsEmpty());
+        return file.Reason;
+    }
+
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("rabit_idl_file_" + std::to_string(getpid()));
+};
+
+TEST_F(IdlFileTest, AMessageHasTheTextThatTheGeneratorGivesIt)
+{
+    // As in uav.idl, with another layout and a constant.
+    const IdlFile file = IdlFile::Load(Write("a.idl", R"(module Uav {
+        const long Places = 64;
+        @final struct GoHome { unsigned long id; string<Places> reply_to; string<2 * Places> reason; };
+        };)"));
+    EXPECT_THAT(file.Reason, IsEmpty());
+    ASSERT_THAT(file.Messages, SizeIs(1));
+    EXPECT_EQ(file.Messages[0]->Name(), "Uav::GoHome");
+    EXPECT_EQ(file.Messages[0]->IdlText(), MessageTypeRegistry::Find("Uav::GoHome")->IdlText());
+    ASSERT_THAT(file.Constants, SizeIs(1));
+    EXPECT_EQ(file.Constants[0], std::make_pair(std::string("Uav::Places"), std::string("64")));
+}
+
+TEST_F(IdlFileTest, FilesIncludeOthersOnceFromBesideThemAndFromFolders)
+{
+    Write("shared/point.idl",
+          "#ifndef POINT\n#define POINT\nmodule A { @nested @final struct Point { double x; }; };\n"
+          "#endif\n");
+    Write("line.idl", "#include \"point.idl\"\nmodule A { @final struct Line { Point from; }; };\n");
+    const IdlFile file = IdlFile::Load(
+        Write("a.idl",
+              "#pragma once\n#include <point.idl>\n#include \"line.idl\"\n"
+              "module A {\n// A mark.\n@final struct Mark {\n    Point at;  // where\n};\n};\n"),
+        {(folder / "shared").string()});
+    EXPECT_THAT(file.Reason, IsEmpty());
+    ASSERT_THAT(file.Messages, SizeIs(2));
+    EXPECT_EQ(file.Messages[1]->Name(), "A::Mark");
+    EXPECT_EQ(file.Comments.at("A::Mark"), "A mark.");
+    EXPECT_EQ(file.Comments.at("A::Mark.at"), "where");
+}
+
+TEST_F(IdlFileTest, AReasonNamesFileAndLine)
+{
+    EXPECT_THAT(ReasonOf("module A {\nstruct B { wstring x; };\n};"), HasSubstr("a.idl:2: "));
+    EXPECT_THAT(ReasonOf("module A {\n@final struct B { long x }\n};"), HasSubstr("a.idl:3: "));
+    EXPECT_THAT(ReasonOf("\n#include \"none.idl\"\n"), EndsWith("a.idl:2: there is no file `none.idl`"));
+    EXPECT_THAT(ReasonOf("#if 1\n#endif\n"), HasSubstr("a.idl:1: `#if 1` is not supported here"));
+    EXPECT_THAT(ReasonOf("@unheard_of @final struct B { long x; };"),
+                HasSubstr("@unheard_of is not supported"));
+    EXPECT_THAT(IdlFile::Load((folder / "none.idl").string()).Reason, EndsWith("none.idl: cannot be read"));
+}
+
+TEST_F(IdlFileTest, AFileThatIncludesItselfIsReadOnce)
+{
+    const IdlFile file = IdlFile::Load(Write("a.idl", "#include \"a.idl\"\n@final struct B { long x; };\n"));
+    EXPECT_THAT(file.Reason, IsEmpty());
+    EXPECT_THAT(file.Messages, SizeIs(1));
+}
+
+}  // namespace
+}  // namespace Rabit
