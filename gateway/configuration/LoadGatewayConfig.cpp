@@ -129,10 +129,11 @@ void ReadPaths(const YamlMap &map, GatewayConfig &config)
 
 void ReadRecord(const YamlMap &map, GatewayConfig &config)
 {
-    const auto record = Section(map, "record",
-                                {"folder", "messages", "except", "queues", "steps", "split_size",
-                                 "split_time", "keep", "free", "memory", "black_box"},
-                                "record", config);
+    const auto record =
+        Section(map, "record",
+                {"folder", "messages", "except", "queues", "steps", "split_size", "split_time", "keep",
+                 "free", "memory", "black_box", "backfill", "backfill_last", "backfill_to"},
+                "record", config);
     if (!record)
     {
         return;
@@ -162,7 +163,26 @@ void ReadRecord(const YamlMap &map, GatewayConfig &config)
         box->Read("outcomes", black.Outcomes);
         box->Read("problems", black.Problems);
     }
+    record->Read("backfill", settings.Backfill);
+    record->Read("backfill_last", settings.BackfillLast);
+    if (config.Lines.contains("record.backfill_to"))
+    {
+        record->Read("backfill_to", settings.BackfillTo.emplace());
+    }
     config.Record = settings;
+}
+
+void ReadFetch(const YamlMap &map, GatewayConfig &config)
+{
+    if (const auto fetch = Section(map, "fetch", {"folder", "from"}, "fetch", config))
+    {
+        fetch->Require("folder");
+        fetch->Require("from");
+        FetchSettings &settings = config.Fetch.emplace();
+        settings.Line = map.Line("fetch");
+        fetch->Read("folder", settings.Folder);
+        fetch->Read("from", settings.From);
+    }
 }
 
 std::optional<TrafficClass> ReadClass(const YamlMap &entry)
@@ -248,11 +268,11 @@ YamlMap OpenText(const std::string &file, const std::string &text)
     return {file,
             Parse(file, text),
             "the configuration",
-            {"node",           "name",        "domain",       "transport",     "interfaces",
-             "peers",          "multicast",   "max_datagram", "shared_memory", "lease",
-             "backend_config", "state_dir",   "security",     "radio",         "record",
-             "publish",        "subscribe",   "accept",       "send",          "foreign",
-             "foxglove",       "problems_of", "reports",      "parameters",    "paths"}};
+            {"node",      "name",         "domain",        "transport",   "interfaces",     "peers",
+             "multicast", "max_datagram", "shared_memory", "lease",       "backend_config", "state_dir",
+             "security",  "radio",        "record",        "publish",     "subscribe",      "accept",
+             "send",      "foreign",      "foxglove",      "problems_of", "reports",        "parameters",
+             "paths",     "fetch"}};
 }
 
 YamlMap OpenFile(const std::string &file)
@@ -286,6 +306,7 @@ GatewayConfig ConfigOf(const YamlMap &map, const std::string &file, const std::s
     ReadRadio(map, "", config, config.Radio);
     ReadPaths(map, config);
     ReadRecord(map, config);
+    ReadFetch(map, config);
     ReadPublish(map, config);
     ReadSubscribe(map, config);
     ReadAccept(map, config);

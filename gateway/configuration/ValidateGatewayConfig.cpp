@@ -42,6 +42,7 @@ public:
         CheckRadio(_config.Radio, "");
         CheckPaths();
         CheckRecord();
+        CheckFetch();
         CheckPublish();
         CheckSubscribe();
         CheckTopicTypes();
@@ -223,6 +224,58 @@ private:
         {
             CheckBlackBox(*record.BlackBox);
         }
+        CheckBackfill(record);
+    }
+
+    void CheckBackfill(const RecordSettings &record) const
+    {
+        const int line = LineOf("record.backfill");
+        for (const std::string &message : record.Backfill)
+        {
+            if (std::none_of(_config.Subscribe.begin(), _config.Subscribe.end(),
+                             [&message](const SubscribeRule &rule) { return rule.Message == message; }))
+            {
+                std::vector<std::string> names;
+                for (const SubscribeRule &rule : _config.Subscribe)
+                {
+                    names.push_back(rule.Message);
+                }
+                Fail(line, "`backfill` names `" + message + "`, which no `subscribe` entry names" +
+                               NearestWordHint(message, names));
+            }
+        }
+        CheckNoneTwice(record.Backfill, "backfill", line);
+        if (!record.Backfill.empty() && record.BlackBox)
+        {
+            Fail(line,
+                 "`backfill` needs a recording of everything, and `black_box` drops most of it; remove "
+                 "one of them");
+        }
+        if (record.BackfillLast < std::chrono::seconds(1) || record.BackfillLast > std::chrono::hours(24))
+        {
+            Fail(LineOf("record.backfill_last"), "`backfill_last` is out of range; expected 1s to 1440min");
+        }
+        if (record.BackfillTo && !record.BackfillTo->empty())
+        {
+            CheckPatterns(*record.BackfillTo, "backfill_to", LineOf("record.backfill_to"));
+        }
+    }
+
+    void CheckFetch() const
+    {
+        if (!_config.Fetch)
+        {
+            return;
+        }
+        if (_config.Fetch->Folder.empty())
+        {
+            Fail(LineOf("fetch.folder"), "no folder of files to fetch; expected `folder: <path>`");
+        }
+        if (_config.Fetch->From.empty())
+        {
+            Fail(LineOf("fetch.from"), "nobody may fetch; expected `from: [<node>]`");
+        }
+        CheckPatterns(_config.Fetch->From, "from", LineOf("fetch.from"));
     }
 
     void CheckBlackBox(const BlackBoxSettings &box) const

@@ -222,7 +222,7 @@ private:
           _outgoing(std::make_shared<OutgoingQueues>(_config.Node, _workspace, _remote, _links, _config.Tap)),
           _incarnation(_links.Incarnation()),
           _source(_workspace.GetClock()),
-          _subscriptions(_config.Subscribe, _origins, _workspace, Handlers()),
+          _subscriptions(_config.Subscribe, _origins, _workspace, Handlers(), _config.Tap),
           _choice(transports.size()),
           _fleet(std::make_shared<Gateway::Fleet>()),
           _exploration(exploration)

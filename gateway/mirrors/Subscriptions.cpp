@@ -15,8 +15,13 @@ namespace Rabit
 {
 
 Subscriptions::Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
-                             RabitWorkspace &workspace, RabitHandlerThread *handlers)
-    : _rules(rules.begin(), rules.end()), _origins(origins), _workspace(workspace), _handlers(handlers)
+                             RabitWorkspace &workspace, RabitHandlerThread *handlers,
+                             std::shared_ptr<GatewayTap> tap)
+    : _rules(rules.begin(), rules.end()),
+      _origins(origins),
+      _workspace(workspace),
+      _handlers(handlers),
+      _tap(std::move(tap))
 {
 }
 
@@ -35,7 +40,7 @@ TopicSubscriber &Subscriptions::Make(const SubscribeRule &rule)
 {
     _subscriptions.push_back(
         {&rule, std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins,
-                                                  _workspace, _handlers)});
+                                                  _workspace, _handlers, _tap)});
     return *_subscriptions.back().Subscriber;
 }
 
@@ -84,7 +89,7 @@ bool Subscriptions::Widen(std::size_t place, const SubscribeRule &rule)
     }
     // A reader has its nodes from the beginning, so another one takes its place. States come anew.
     auto subscriber = std::make_unique<TopicSubscriber>(wider, *MessageTypeRegistry::Find(wider.Type),
-                                                        _origins, _workspace, _handlers);
+                                                        _origins, _workspace, _handlers, _tap);
     for (TransportSession *session : _sessions)
     {
         subscriber->Open(*session);

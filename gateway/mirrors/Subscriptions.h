@@ -29,9 +29,11 @@ namespace Rabit
 class Subscriptions
 {
 public:
-    // Origins, workspace and handlers must outlive the object. Null: see TopicSubscriber.
+    // Origins, workspace and handlers must outlive the object. Null handlers, and the tap: see
+    // TopicSubscriber.
     Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
-                  RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr);
+                  RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr,
+                  std::shared_ptr<GatewayTap> tap = nullptr);
 
     // Reads from that session as well, and keeps it until Close. Throws TransportError.
     void Open(TransportSession &session);
@@ -81,6 +83,7 @@ private:
     const OriginTable &_origins;
     RabitWorkspace &_workspace;
     RabitHandlerThread *const _handlers;
+    const std::shared_ptr<GatewayTap> _tap;
     std::vector<Subscription> _subscriptions;  // of each rule, in their order, while open
     std::vector<TransportSession *> _sessions;
     std::map<std::string, Known> _known;

@@ -158,16 +158,13 @@ void TopicPublisher::Written(Duration now)
     }
 }
 
-// The second of two States within a step of StateVersion gets the time of the next step.
+// All times are in the middle of a step, telemetry too: so a sample and the post in the recording of this
+// node are known to be the same (../backfill). The second of two values within a step of StateVersion gets
+// the time of the next step.
 std::int64_t TopicPublisher::TimeOfPost() const
 {
-    const std::int64_t posted = _source.At(_local->GetPostTime().Monotonic);
-    if (_rule.Qos != QosProfile::State)
-    {
-        return posted;
-    }
     constexpr std::int64_t ShortlyBefore = 100 * StateVersion::Step;
-    const std::int64_t time = StateVersion::Quantised(posted);
+    const std::int64_t time = StateVersion::Quantised(_source.At(_local->GetPostTime().Monotonic));
     return time <= _time && _time - time < ShortlyBefore ? StateVersion::Next(_time) : time;
 }
 

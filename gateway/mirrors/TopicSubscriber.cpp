@@ -24,12 +24,13 @@ constexpr std::size_t MostSources = PeerTable::MaximumPeers + 1;
 
 TopicSubscriber::TopicSubscriber(const SubscribeRule &rule, const MessageType &type,
                                  const OriginTable &origins, RabitWorkspace &workspace,
-                                 RabitHandlerThread *handlers)
+                                 RabitHandlerThread *handlers, std::shared_ptr<GatewayTap> tap)
     : _rule(rule),
       _type(type),
       _origins(origins),
       _workspace(workspace),
       _handlers(handlers),
+      _tap(std::move(tap)),
       _scratch(type.Create())
 {
 }
@@ -223,6 +224,10 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
     const RabitHandlerThread::Scope scope(_handlers, source.LocalName, global);
     global->PostMessage(_scratch.get(), PostTime{stamp, *posted});
     source.Posted = Sample{info.Incarnation, info.SourceTime};
+    if (_tap)
+    {
+        _tap->Mirrored({info.Node, _rule.Message, info.Incarnation, info.SourceTime, *posted, bytes});
+    }
     return Outcome::Posted;
 }
 

@@ -4,6 +4,7 @@
 #include <rabit/RabitMessageLease.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayConfig.h>
+#include <rabit/gateway/GatewayTap.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/Transport.h>
 
@@ -43,10 +44,11 @@ namespace Rabit
 class TopicSubscriber
 {
 public:
-    // `origins`, the workspace and `handlers` must outlive the object. Null: all handlers are called on the
-    // transport's thread.
+    // `origins`, the workspace and `handlers` must outlive the object. Without `handlers` all handlers are
+    // called on the transport's thread. The tap, if there is one, is told of each posted sample.
     TopicSubscriber(const SubscribeRule &rule, const MessageType &type, const OriginTable &origins,
-                    RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr);
+                    RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr,
+                    std::shared_ptr<GatewayTap> tap = nullptr);
     ~TopicSubscriber();
 
     // Reads from that session as well; throws TransportError.
@@ -117,6 +119,7 @@ private:
     const OriginTable &_origins;
     RabitWorkspace &_workspace;
     RabitHandlerThread *const _handlers;
+    const std::shared_ptr<GatewayTap> _tap;
     // Held by the handler, from decoding to the post, if there are several sessions: their readers may run at
     // once, one reader's handlers never do.
     std::mutex _taking;

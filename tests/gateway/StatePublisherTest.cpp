@@ -78,6 +78,22 @@ TEST_F(StatePublisherTest, AStateIsWrittenOnceAndItsVersionIsThatOfItsTime)
     EXPECT_EQ(network.Times.at(0), StateVersion::Quantised(network.Times.at(0)));
 }
 
+// So that a sample and the post in a recording are known to be the same, whatever a backend rounds.
+TEST_F(StatePublisherTest, TelemetryHasTimesInTheMiddleOfAStepToo)
+{
+    TopicPublisher telemetry{{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry},
+                             Uav::Pose::IdlType(),
+                             "uav1",
+                             SourceClock(*clock),
+                             session};
+    workspace.AddPublishSubscribeMessage("Pose", telemetry.Local());
+    telemetry.SetAttached();
+    pose->PostMessage();
+    telemetry.Service(Now());
+    EXPECT_EQ(network.Times.back(), StateVersion::Quantised(network.Times.back()));
+    EXPECT_EQ(telemetry.Version(), StateVersion::None);
+}
+
 TEST_F(StatePublisherTest, OneThatIsAskedForIsWrittenAgainAsTheSame)
 {
     Post();

@@ -138,6 +138,45 @@ TEST_F(TopicSubscriberTest, TheEndOfAnInstanceBeforeItsSuccessorLeavesTheValueUn
     EXPECT_EQ(Posted(), 2);
 }
 
+// Notes the mirrored samples.
+class MirrorTap final : public GatewayTap
+{
+public:
+    void Sent(const QueueMessage &) override {}
+    void Refused(const QueueMessage &, std::string_view) override {}
+    void Settled(std::string_view, std::string_view, std::uint64_t, QueueOutcome) override {}
+    void Received(const QueueMessage &) override {}
+    void Mirrored(const MirroredSample &sample) override
+    {
+        Times.push_back(sample.SourceTime);
+        Incarnations.push_back(sample.Incarnation);
+        Bytes.assign(sample.Sample.begin(), sample.Sample.end());
+    }
+    void Clocks(std::uint64_t, std::chrono::nanoseconds, const std::vector<PeerClock> &) override {}
+    std::vector<Gateway::Problem> Problems() override { return {}; }
+
+    std::vector<std::int64_t> Times;
+    std::vector<std::uint64_t> Incarnations;
+    std::vector<std::uint8_t> Bytes;
+};
+
+TEST_F(TopicSubscriberTest, TheTapIsToldOfEachPostedSampleAndOfNoOther)
+{
+    const auto tap = std::make_shared<MirrorTap>();
+    TopicSubscriber other(rule, Contact::IdlType(), origins, workspace, nullptr, tap);
+    other.Open(session);
+    other.SetOffer("uav1", QosProfile::State);
+    Hear(1, 2'000'000'000);
+    Hear(1, 2'000'000'000);  // repeated
+    Hear(2, 1'000'000'000);  // overtaken
+    HearBytes({1, 2, 3}, 3'000'000'000);
+    EXPECT_EQ(tap->Times, std::vector<std::int64_t>{2'000'000'000});
+    EXPECT_EQ(tap->Incarnations, std::vector<std::uint64_t>{5});
+    Contact contact;
+    EXPECT_TRUE(Contact::IdlType().Deserialize(tap->Bytes, contact));
+    EXPECT_EQ(contact.number, 1u);
+}
+
 // The transport's thread must go on: it brings the beats of other nodes.
 TEST_F(TopicSubscriberTest, ASlowHandlerHoldsUpNeitherTheTransportNorWhatComesNext)
 {

@@ -86,7 +86,8 @@ MUTATIONS = [
     publisher("a State is told before its last datagram", "_isWhole = !IsUnderWay(); if (_isWhole)", "_isWhole = !IsUnderWay();"),
     publisher("what is under way is repeated", "_version != StateVersion::None && _isWhole", "_version != StateVersion::None"),
     publisher("two States of one moment are one", "? StateVersion::Next(_time) : time", "? _time : time"),
-    publisher("times are as they are", "StateVersion::Quantised(posted)", "posted"),
+    publisher("times are as they are", "StateVersion::Quantised(_source.At(_local->GetPostTime().Monotonic))",
+              "_source.At(_local->GetPostTime().Monotonic)"),
     publisher("what is asked for comes more often than the rule allows", "std::max(*repeat, mayWriteAt)", "*repeat"),
     publisher("what was never written is repeated", "if (_version != StateVersion::None && _isWhole)", "if (_isWhole)"),
     # Accepted samples

@@ -171,6 +171,22 @@ struct RecordSettings
     std::uint64_t Free = std::uint64_t{1} << 30;
     std::uint64_t Memory = 64U << 20;            // bytes that may wait for the disk, 1 MB to 64 GB
     std::optional<BlackBoxSettings> BlackBox{};  // set: a recording is written only on a trigger
+    // Messages of other nodes, each of a `subscribe` rule, without wildcards: the posts that are missing here
+    // are requested from the recordings of these nodes (gateway/backfill/README.md).
+    std::vector<std::string> Backfill{};
+    std::chrono::milliseconds BackfillLast{3'600'000};  // older posts are not requested, 1 s to 24 h
+    // Nodes that may request posts of published messages from this recording; `*` and `?` are wildcards.
+    // Unset: everybody without keys, nobody with keys.
+    std::optional<std::vector<std::string>> BackfillTo{};
+    int Line = 0;
+};
+
+// The files of one folder, which other nodes may fetch (`rabit fetch`). Files in folders below it and
+// symbolic links are not sent.
+struct FetchSettings
+{
+    std::string Folder;
+    std::vector<std::string> From;  // nodes that may fetch, at least one; `*` and `?` are wildcards
     int Line = 0;
 };
 
@@ -221,6 +237,8 @@ struct GatewayConfig
 
     // Set: this is recorded.
     std::optional<RecordSettings> Record{};
+    // Set: other nodes may fetch files of this one.
+    std::optional<FetchSettings> Fetch{};
     // Observes queue messages and clocks; may be null. Only in code.
     std::shared_ptr<GatewayTap> Tap{};
 
@@ -234,7 +252,7 @@ struct GatewayConfig
     bool Reports = true;
 
     // For error messages: the file of the configuration, and the lines of its top-level keys and of the keys
-    // in `security`, `radio` and `record` (`radio.budget`). Empty: made in code.
+    // in `security`, `radio`, `record` and `fetch` (`radio.budget`). Empty: made in code.
     std::string File;
     std::map<std::string, int> Lines;
 };

@@ -14,8 +14,8 @@
 namespace Rabit
 {
 
-// An observer, for recordings, of a gateway's queue messages and of the other nodes' clocks. Set in
-// GatewayConfig::Tap. Mirrored data is not reported here: it is in the local messages.
+// An observer, for recordings, of a gateway's queue messages, of mirrored samples, and of the other nodes'
+// clocks. Set in GatewayConfig::Tap.
 //
 // Threads: called on any thread, on several at once, with no lock held; must be quick, since managers and the
 // network wait for it. Views are valid during the call. Nothing may be thrown.
@@ -43,6 +43,18 @@ public:
                          QueueOutcome outcome) = 0;
     // A message was put into a queue of this node.
     virtual void Received(const QueueMessage &message) = 0;
+
+    struct MirroredSample
+    {
+        std::string_view Node;
+        std::string_view Message;
+        std::uint64_t Incarnation = 0;         // of the node
+        std::int64_t SourceTime = 0;           // its post by the source clock of that incarnation, in ns
+        std::chrono::nanoseconds PostedAt{0};  // the same by the monotonic clock here, as it is known
+        std::span<const std::uint8_t> Sample;
+    };
+    // A message of another node was posted here. Never two at once of one message.
+    virtual void Mirrored(const MirroredSample & /*sample*/) {}
 
     // Relates the source clock of another node, which its samples carry as source time, to this node's
     // monotonic clock.
