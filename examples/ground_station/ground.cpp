@@ -11,6 +11,7 @@
 
 #include <rabit/RabitLog.h>
 #include <rabit/RabitReactor.h>
+#include <rabit/backfill/BackfillManager.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/node/NodeOptions.h>
 #include <rabit/node/RunProgram.h>
@@ -286,8 +287,15 @@ int Watch(const Options &options)
     reactor.AddManager(std::move(commander));
     if (server)
         reactor.AddManager(MakeWebPage(options, config, std::move(server)));
+    Rabit::RecorderManager *recorder = nullptr;
     if (config.Record)
-        reactor.AddManager(std::make_unique<Rabit::RecorderManager>(config));
+    {
+        auto made = std::make_unique<Rabit::RecorderManager>(config);
+        recorder = made.get();
+        reactor.AddManager(std::move(made));
+    }
+    if (Rabit::BackfillManager::IsUsed(config))
+        reactor.AddManager(std::make_unique<Rabit::BackfillManager>(config, recorder));
     reactor.AddManager(
         std::make_unique<Rabit::GatewayManager>(config, Rabit::TransportsOf(config, Rabit::MakeTransport)));
     {

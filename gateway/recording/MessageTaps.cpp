@@ -116,7 +116,16 @@ void MessageTaps::Look()
 
 bool MessageTaps::IsWanted(const std::string &name) const
 {
-    return MatchesAny(_config.Record->Messages, name) && !MatchesAny(_config.Record->Except, name);
+    return MatchesAny(_config.Record->Messages, name) && !MatchesAny(_config.Record->Except, name) &&
+           !IsBackfilled(name);
+}
+
+// These messages are recorded by ../backfill, as they come.
+bool MessageTaps::IsBackfilled(const std::string &name) const
+{
+    const std::vector<std::string> &messages = _config.Record->Backfill;
+    const Origin origin = messages.empty() ? Origin() : OriginOf(name);
+    return origin.IsMirrored && std::find(messages.begin(), messages.end(), origin.Message) != messages.end();
 }
 
 void MessageTaps::AddSubscription(const SubscribeRule &rule)

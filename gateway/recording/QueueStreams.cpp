@@ -125,6 +125,13 @@ void QueueStreams::Clocks(std::uint64_t incarnation, std::chrono::nanoseconds so
                           const std::vector<PeerClock> &peers)
 {
     const std::chrono::nanoseconds monotonicToLog = _target->MonotonicToLog();
+    const std::string sourceToLog = std::to_string((monotonicToLog - sourceAhead).count());
+    if (std::exchange(_incarnation, incarnation) != incarnation)
+    {
+        // In each file, so that each tells the times of its posts by the clock of their samples.
+        _target->Inbox().SetMetadata("rabit.clock", {{"incarnation", std::to_string(incarnation)},
+                                                     {"source_to_log_ns", sourceToLog}});
+    }
     Json others = Json::array();
     for (const PeerClock &peer : peers)
     {
@@ -135,7 +142,7 @@ void QueueStreams::Clocks(std::uint64_t incarnation, std::chrono::nanoseconds so
     }
     _target->PutJson(_clocks,
                      TextOf({{"incarnation", std::to_string(incarnation)},
-                             {"source_to_log_ns", std::to_string((monotonicToLog - sourceAhead).count())},
+                             {"source_to_log_ns", sourceToLog},
                              {"peers", others}}));
 }
 

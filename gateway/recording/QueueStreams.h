@@ -46,6 +46,7 @@ private:
     const std::uint32_t _outcomes;
     const std::uint32_t _clocks;
     const std::uint32_t _others;
+    std::uint64_t _incarnation = 0;  // of this node; used on the gateway's thread
     std::mutex _mutex;
     std::map<std::string, std::uint32_t> _streams;  // by topic
 };

@@ -138,6 +138,7 @@ public:
     }
     void AddSubscription(const SubscribeRule &rule) { _taps.AddSubscription(rule); }
     void Happened(const std::string &what) { _target->Happened(what); }
+    const std::shared_ptr<RecordingTarget> &Target() const { return _target; }
 
 private:
     const RecordingSettings _settings;
@@ -168,6 +169,11 @@ RecorderManager::RecorderManager(GatewayConfig &config, RabitWorkspace &workspac
 }
 
 RecorderManager::~RecorderManager() = default;
+
+const std::shared_ptr<RecordingTarget> &RecorderManager::Target() const
+{
+    return _parts->Target();
+}
 
 void RecorderManager::Startup()
 {

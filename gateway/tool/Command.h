@@ -43,6 +43,7 @@ void AddCheckCommand(CLI::App &app, Chosen &chosen);
 void AddLogCommand(CLI::App &app, Chosen &chosen);
 void AddPingCommand(CLI::App &app, Chosen &chosen);
 void AddTopCommand(CLI::App &app, Chosen &chosen);
+void AddFetchCommand(CLI::App &app, Chosen &chosen);
 void AddDoctorCommand(CLI::App &app, Chosen &chosen);
 void AddKeysCommand(CLI::App &app, Chosen &chosen);
 void AddLabCommand(CLI::App &app, Chosen &chosen);

@@ -149,6 +149,13 @@ Candidates ArgumentsIn(const std::vector<FleetSession::Node> &nodes, const std::
             found.insert(node.Name);
         }
     }
+    if (command == "fetch" && before.empty())
+    {
+        for (const FleetSession::Node &node : nodes)
+        {
+            found.insert(node.Name + ":");
+        }
+    }
     if (command != "send" || before.size() > 1)
     {
         return found;

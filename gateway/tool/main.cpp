@@ -103,6 +103,7 @@ int RunProgram(int argc, char **argv)
     AddCheckCommand(app, chosen);
     AddLogCommand(app, chosen);
     AddPingCommand(app, chosen);
+    AddFetchCommand(app, chosen);
     AddTopCommand(app, chosen);
     AddDoctorCommand(app, chosen);
     AddKeysCommand(app, chosen);

@@ -40,6 +40,8 @@ OWNERS = [
     (r"recording/replay/", "room replay"),
     (r"recording/rerun/", "room rerun"),
     (r"recording/", "room recording"),
+    (r"backfill/", "room backfill"),
+    (r"backfill\.idl\.h", "backfill messages"),
     *((f"{room}/", f"room {room}") for room in ROOMS),
     (r"guard/", "guard"),
     (r"rtps/", "meeting"),
@@ -59,6 +61,7 @@ OWNERS = [
     (r"rabit/node/", "node"),
     (r"rabit/testing/", "testing"),
     (r"rabit/recording/", "recording"),
+    (r"rabit/backfill/", "backfill"),
     (r"rabit/", "core"),
     (r"gateway\.idl\.h", "gateway messages"),
     (r".*\.idl\.h", "user messages"),
@@ -110,14 +113,17 @@ ALLOWED = {
     "gateway/recording/rerun": {"core", "idl", "idl dynamic", "recording", "room mcap", "room rerun"},
     "gateway/recording": {"core", "idl", "gateway", "recording", "room names", "room clocks", "room mcap", "room rerun",
                           "room recording"},
+    # Posts and files of other nodes' recordings, over queue messages.
+    "gateway/backfill": {"backfill", "core", "idl", "gateway", "gateway messages", "backfill messages", "recording", "OpenSSL", "room names",
+                         "room mcap", "room recording", "room backfill"},
     "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
                      "network", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room manager", "room mcap",
-                     "room recording", "room merge", "room replay"},
+                     "room recording", "room merge", "room replay", "room backfill", "backfill messages"},
     "gateway/python": {"core", "idl", "idl dynamic", "factory", "gateway", "recording", "gateway messages", "transport",
                        "room names", "room mcap", "room recording", "room merge"},
     # Whole nodes on a simulated network, for tests.
     "gateway/testing": {"core", "transport", "simulated backend", "gateway", "testing"},
-    "gateway/node": {"core", "idl", "factory", "gateway", "node", "recording", "CLI11"},
+    "gateway/node": {"core", "idl", "factory", "gateway", "node", "recording", "backfill", "CLI11"},
     # Programs that are measured against each other. Nodes name no vendor. The plain programs of each vendor show what
     # a user gets without Rabit, and so include nothing of it.
     "tests/bench": {"core", "idl", "idl dynamic", "transport", "factory", "simulated backend", "gateway", "gateway messages",
@@ -128,7 +134,7 @@ ALLOWED = {
     # The lab: its radio carries any program's frames, and its reader of recordings knows no network.
     "gateway/lab/radio": {"CLI11", "network"},
     "gateway/lab/facts": {"core", "idl", "idl dynamic", "gateway messages", "room mcap", "CLI11"},
-    "examples": {"core", "idl", "factory", "gateway", "node", "recording", "gateway messages", "user messages", "CLI11",
+    "examples": {"backfill", "core", "idl", "factory", "gateway", "node", "recording", "gateway messages", "user messages", "CLI11",
                  "network", "yaml-cpp"},
     # Serves TLS, with keys of its own.
     "examples/ground_station/web": {"core", "idl", "gateway", "gateway messages", "user messages", "network", "OpenSSL",
@@ -153,7 +159,7 @@ def upward_rooms():
 def rooms_unknown(root):
     """Folders of the gateway that are no rooms, and so are not checked."""
     for folder in sorted((root / "gateway").glob("*/")):
-        if folder.name not in {"include", "lab", "links", "node", "python", "recording", "testing", "tool", *ROOMS} and any(folder.rglob("*.h")):
+        if folder.name not in {"backfill", "include", "lab", "links", "node", "python", "recording", "testing", "tool", *ROOMS} and any(folder.rglob("*.h")):
             yield f"gateway/{folder.name}: no room that the house knows"
 
 

@@ -1,4 +1,5 @@
 #include <rabit/RabitLog.h>
+#include <rabit/backfill/BackfillManager.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/idl/NearestWord.h>
 #include <rabit/node/RunNode.h>
@@ -64,9 +65,16 @@ int RunNode(int argc, char **argv, const NodeProgram &program)
                 return 0;
             }
             // The recorder comes before the gateway, which tells it of queue messages.
+            RecorderManager *recorder = nullptr;
             if (config.Record)
             {
-                reactor.AddManager(std::make_unique<RecorderManager>(config));
+                auto made = std::make_unique<RecorderManager>(config);
+                recorder = made.get();
+                reactor.AddManager(std::move(made));
+            }
+            if (BackfillManager::IsUsed(config))
+            {
+                reactor.AddManager(std::make_unique<BackfillManager>(config, recorder));
             }
             reactor.AddManager(std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport)));
             reactor.Run();  // until SIGINT or SIGTERM

@@ -21,7 +21,13 @@ MergedChannels::MergedChannels(const Lives &lives, const MergePlan &plan, Mcap::
 
 std::string MergedChannels::TopicOf(std::size_t life, const Mcap::Channel &channel) const
 {
-    return IsMirrored(channel) ? _lives.All[life].Node + "/Recorder/knew/" + channel.Topic : channel.Topic;
+    const std::string recorder = _lives.All[life].Node + "/Recorder/";
+    if (Mcap::ValueOf(channel.Metadata, "rabit.kind") == "backfilled")
+    {
+        // The recording of its origin node may be here, too.
+        return recorder + "backfilled/" + channel.Topic;
+    }
+    return IsMirrored(channel) ? recorder + "knew/" + channel.Topic : channel.Topic;
 }
 
 std::optional<MergedChannels::Made> MergedChannels::Of(std::size_t life, const Mcap::Contents &contents,

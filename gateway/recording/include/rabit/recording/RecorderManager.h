@@ -9,6 +9,7 @@
 namespace Rabit
 {
 class RecordingDisk;
+class RecordingTarget;
 
 // Records this process into MCAP files, as GatewayConfig::Record says: local messages whose types were made
 // from IDL, mirrored ones included; messages to and from queues of other nodes, and their outcomes; states
@@ -41,6 +42,9 @@ public:
     void AddSubscription(const SubscribeRule &rule);
     // Has the black box written now, if there is one; `why` stands in the file. Any thread.
     void WriteBlackBox(const std::string &why);
+
+    // The recording itself, for other parts of the gateway that record.
+    const std::shared_ptr<RecordingTarget> &Target() const;
 
     void Startup() final;
     void ExecuteUnitOfWork() final;

@@ -1,0 +1,135 @@
+#include "backfill/FileAnswers.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "backfill/FileHash.h"
+
+namespace Rabit::Backfill
+{
+namespace
+{
+
+class Descriptor
+{
+public:
+    explicit Descriptor(int number) : _number(number) {}
+    ~Descriptor()
+    {
+        if (_number >= 0)
+        {
+            ::close(_number);
+        }
+    }
+    Descriptor(const Descriptor &) = delete;
+    Descriptor &operator=(const Descriptor &) = delete;
+    int Number() const { return _number; }
+
+private:
+    const int _number;
+};
+
+bool IsPlainName(const std::string &name)
+{
+    return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos &&
+           name.find('\0') == std::string::npos;
+}
+
+}  // namespace
+
+Answer FileAnswers::Of(const std::string &node, const Question &question)
+{
+    Answer answer;
+    answer.kind = question.kind;
+    answer.number = question.number;
+    answer.name = question.name;
+    answer.from = question.from;
+    answer.to = question.from;
+    if (_folder.empty() || !_mayFetch(node))
+    {
+        answer.result = Result::NOT_ALLOWED;
+        return answer;
+    }
+    answer.result = Result::UNKNOWN;
+    if (!IsPlainName(question.name))
+    {
+        return answer;
+    }
+    const Descriptor folder(::open(_folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    // A pipe would block without O_NONBLOCK.
+    const Descriptor file(
+        ::openat(folder.Number(), question.name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    struct stat status
+    {
+    };
+    if (file.Number() < 0 || ::fstat(file.Number(), &status) != 0 || !S_ISREG(status.st_mode))
+    {
+        return answer;
+    }
+    if (question.kind == Kind::FACTS)
+    {
+        AnswerFacts(file.Number(), question, answer);
+        return answer;
+    }
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    answer.size = size;
+    answer.result = Result::FAILED;
+    if (question.from > size || question.to < question.from)
+    {
+        return answer;
+    }
+    answer.bytes.resize(
+        static_cast<std::size_t>(std::min({question.to - question.from, size - question.from, LargestPart})));
+    std::size_t read = 0;
+    while (read < answer.bytes.size())
+    {
+        const ssize_t part = ::pread(file.Number(), answer.bytes.data() + read, answer.bytes.size() - read,
+                                     static_cast<off_t>(question.from + read));
+        if (part <= 0 && !(part < 0 && errno == EINTR))
+        {
+            answer.bytes.clear();
+            return answer;
+        }
+        read += part > 0 ? static_cast<std::size_t>(part) : 0;
+    }
+    answer.to = question.from + read;
+    answer.result = Result::OK;
+    return answer;
+}
+
+void FileAnswers::AnswerFacts(int file, const Question &question, Answer &answer)
+{
+    struct stat status
+    {
+    };
+    answer.result = Result::FAILED;
+    if (::fstat(file, &status) != 0)
+    {
+        return;
+    }
+    if (_facts.size() >= MostFacts && !_facts.contains(question.name))
+    {
+        _facts.clear();
+    }
+    Facts &facts = _facts[question.name];
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    const std::int64_t changedAt = status.st_mtim.tv_sec * 1'000'000'000 + status.st_mtim.tv_nsec;
+    if (facts.Hash.empty() || facts.Size != size || facts.ChangedAt != changedAt)
+    {
+        auto hash = HashOf(file, size);
+        if (!hash)
+        {
+            return;
+        }
+        facts = {size, changedAt, std::move(*hash)};
+    }
+    answer.result = Result::OK;
+    answer.size = facts.Size;
+    answer.bytes = facts.Hash;
+}
+
+}  // namespace Rabit::Backfill

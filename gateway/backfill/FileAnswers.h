@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "backfill.idl.h"
+
+namespace Rabit::Backfill
+{
+
+// Answers questions about the files of one folder. Only regular files in it are sent: a name with a slash, a
+// symbolic link, a device and a folder are UNKNOWN, as is a file that is not there. Not thread-safe.
+class FileAnswers
+{
+public:
+    // Bytes in one answer.
+    static constexpr std::uint64_t LargestPart = 64U << 10;
+
+    using MayFetch = std::function<bool(const std::string &node)>;
+    // Without a folder nothing is allowed.
+    FileAnswers(std::string folder, MayFetch mayFetch)
+        : _folder(std::move(folder)), _mayFetch(std::move(mayFetch))
+    {
+    }
+
+    // The question must be of the kind FACTS or PART.
+    Answer Of(const std::string &node, const Question &question);
+
+private:
+    struct Facts
+    {
+        std::uint64_t Size = 0;
+        std::int64_t ChangedAt = 0;
+        std::vector<std::uint8_t> Hash;
+    };
+    // Hashes that are remembered: a large file takes seconds.
+    static constexpr std::size_t MostFacts = 64;
+
+    void AnswerFacts(int file, const Question &question, Answer &answer);
+
+    const std::string _folder;
+    const MayFetch _mayFetch;
+    std::map<std::string, Facts> _facts;
+};
+
+}  // namespace Rabit::Backfill

@@ -1,0 +1,180 @@
+#include "backfill/FolderPosts.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "backfill/RecordedSeries.h"
+
+namespace Rabit::Backfill
+{
+namespace
+{
+
+Stamp StampAt(std::uint64_t logTime, std::int64_t sourceToLog)
+{
+    return StampOf(static_cast<std::int64_t>(logTime) - sourceToLog);
+}
+
+}  // namespace
+
+FolderPosts::FolderPosts(const std::string &folder, const std::string &node)
+    : _node(node),
+      _index(folder, node,
+             [node](const Mcap::Channel &channel)
+             {
+                 return TextAt(channel.Metadata, "rabit.kind") == "posted" &&
+                        TextAt(channel.Metadata, "rabit.node") == node;
+             })
+{
+}
+
+Stamp FolderPosts::Part::LastStamp() const
+{
+    return StampAt(Piece->LastLog, SourceToLog);
+}
+
+// By incarnation; the oldest first.
+std::map<std::uint64_t, std::vector<FolderPosts::Part>> FolderPosts::PartsOf(const std::string &message) const
+{
+    std::map<std::uint64_t, std::vector<Part>> parts;
+    for (const auto &[name, file] : _index.Files())
+    {
+        const auto clock = file.Metadata.find("rabit.clock");
+        std::uint64_t incarnation = 0;
+        std::int64_t sourceToLog = 0;
+        if (!file.IsOwn || clock == file.Metadata.end() ||
+            !ReadNumber(TextAt(clock->second, "incarnation"), incarnation) ||
+            !ReadNumber(TextAt(clock->second, "source_to_log_ns"), sourceToLog))
+        {
+            continue;
+        }
+        for (const RecordingIndex::Piece &piece : file.Pieces)
+        {
+            if (file.Channels.at(piece.Channel).Topic == _node + "/" + message)
+            {
+                parts[incarnation].push_back({&file, &piece, sourceToLog});
+            }
+        }
+    }
+    return parts;
+}
+
+// The first message may have been posted long before the recording began.
+Stamp FolderPosts::FirstStamp(const Part &part)
+{
+    const auto [known, isNew] =
+        _firsts.try_emplace({part.File->Path + ":" + std::to_string(part.Piece->Channel), part.Piece->Offset},
+                            std::numeric_limits<Stamp>::max());
+    if (isNew)
+    {
+        _index.Visit(
+            *part.File, *part.Piece,
+            [&known, &part](const Mcap::Message &message)
+            { known->second = std::min(known->second, StampAt(message.PublishTime, part.SourceToLog)); });
+    }
+    return std::min(known->second, StampAt(part.Piece->FirstLog, part.SourceToLog));
+}
+
+std::vector<PostsCodec::Span> FolderPosts::Spans(const std::string &message, std::uint64_t last)
+{
+    _index.Refresh();
+    std::uint64_t newest = 0;
+    for (const auto &[name, file] : _index.Files())
+    {
+        newest = std::max(newest, file.IsOwn ? file.NewestLog : 0);
+    }
+    last = std::min<std::uint64_t>(last, newest / 1'000'000'000);
+    const std::uint64_t oldest = newest - last * 1'000'000'000;
+    std::vector<PostsCodec::Span> spans;
+    for (const auto &[incarnation, parts] : PartsOf(message))
+    {
+        const bool isPresent = incarnation == _incarnation;
+        const Part &end = *std::max_element(parts.begin(), parts.end(),
+                                            [](const Part &one, const Part &other)
+                                            { return one.Piece->LastLog < other.Piece->LastLog; });
+        if (end.Piece->LastLog < oldest)
+        {
+            continue;
+        }
+        Range range;
+        range.First = std::max(FirstStamp(parts.front()), StampAt(oldest, parts.front().SourceToLog));
+        range.End = isPresent ? StampAt(std::max(newest, SettledAfter) - SettledAfter, end.SourceToLog)
+                              : end.LastStamp() + 1;
+        range.End = std::max(range.End, range.First);
+        spans.push_back({incarnation, range, !isPresent});
+    }
+    if (spans.size() > PostsCodec::MostSpans)
+    {
+        spans.erase(spans.begin(), spans.end() - PostsCodec::MostSpans);
+    }
+    return spans;
+}
+
+PostStore::Found FolderPosts::Read(const std::string &message, std::uint64_t incarnation, Range range,
+                                   const std::vector<Stamp> &had, std::size_t most)
+{
+    Found found{.First = range.First, .Posts = {}, .IsReadable = true};
+    std::vector<Part> parts = std::move(PartsOf(message)[incarnation]);
+    // The first part may hold a post from before the recording: it is always looked at.
+    std::vector<Part> chosen;
+    for (std::size_t i = 0; i < parts.size(); ++i)
+    {
+        const bool isAfter = StampAt(parts[i].Piece->FirstLog, parts[i].SourceToLog) >
+                             range.End + StepsIn(static_cast<std::int64_t>(SettledAfter));
+        if (parts[i].LastStamp() >= range.First && (!isAfter || i == 0))
+        {
+            chosen.push_back(parts[i]);
+        }
+    }
+    std::stable_sort(chosen.begin(), chosen.end(),
+                     [](const Part &one, const Part &other)
+                     { return one.Piece->LastLog > other.Piece->LastLog; });
+    std::map<Stamp, Post> posts;
+    std::map<Stamp, Post>::iterator first;
+    const auto fit = [&]
+    {
+        std::size_t bytes = 0;
+        first = posts.end();
+        while (first != posts.begin())
+        {
+            const std::size_t size = std::prev(first)->second.Bytes.size();
+            if (bytes > 0 && bytes + size > most)
+            {
+                return false;
+            }
+            bytes += std::max<std::size_t>(size, 1);
+            --first;
+        }
+        return true;
+    };
+    bool goesOn = true;
+    for (std::size_t i = 0; i < chosen.size() && goesOn; ++i)
+    {
+        const Part &part = chosen[i];
+        const bool isRead = _index.Visit(
+            *part.File, *part.Piece,
+            [&](const Mcap::Message &one)
+            {
+                const std::int64_t time = static_cast<std::int64_t>(one.PublishTime) - part.SourceToLog;
+                const Stamp stamp = StampOf(time);
+                if (range.Contains(stamp) && !std::binary_search(had.begin(), had.end(), stamp))
+                {
+                    posts.try_emplace(stamp, Post{time, {one.Data.begin(), one.Data.end()}});
+                }
+            });
+        found.IsReadable = found.IsReadable && isRead;
+        // Enough, if the parts that are left hold only older posts.
+        goesOn = fit() || (i + 1 < chosen.size() && chosen[i + 1].LastStamp() >= first->first);
+    }
+    if (!fit())
+    {
+        found.First = first->first;
+    }
+    for (; first != posts.end(); ++first)
+    {
+        found.Posts.push_back(std::move(first->second));
+    }
+    return found;
+}
+
+}  // namespace Rabit::Backfill

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "backfill/PostStore.h"
+#include "backfill/RecordingIndex.h"
+
+namespace Rabit::Backfill
+{
+
+// The posts in the recordings of this node, those of former incarnations included. Not thread-safe.
+class FolderPosts final : public PostStore
+{
+public:
+    // Messages are in a file this long after they were recorded, unless the disk is slower. Then the newest
+    // message that is in the file is as late.
+    static constexpr std::uint64_t SettledAfter = 1'000'000'000;
+
+    FolderPosts(const std::string &folder, const std::string &node);
+
+    // The present incarnation: its recording is still being written.
+    void SetIncarnation(std::uint64_t incarnation) { _incarnation = incarnation; }
+
+    std::vector<PostsCodec::Span> Spans(const std::string &message, std::uint64_t last) override;
+    Found Read(const std::string &message, std::uint64_t incarnation, Range range,
+               const std::vector<Stamp> &had, std::size_t most) override;
+
+private:
+    // The pieces of one message in one file, and the clock of that file.
+    struct Part
+    {
+        const RecordingIndex::File *File = nullptr;
+        const RecordingIndex::Piece *Piece = nullptr;
+        std::int64_t SourceToLog = 0;
+
+        Stamp LastStamp() const;
+    };
+    std::map<std::uint64_t, std::vector<Part>> PartsOf(const std::string &message) const;
+    Stamp FirstStamp(const Part &part);
+
+    const std::string _node;
+    RecordingIndex _index;
+    std::uint64_t _incarnation = 0;
+    std::map<std::pair<std::string, std::uint64_t>, Stamp> _firsts;  // by file and chunk
+};
+
+}  // namespace Rabit::Backfill

@@ -1,0 +1,150 @@
+#include "backfill/Ledger.h"
+
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+namespace Rabit::Backfill
+{
+
+Ledger::Track *Ledger::FindOrAdd(const Series &series)
+{
+    const auto found = _tracks.find(series);
+    if (found != _tracks.end())
+    {
+        return &found->second;
+    }
+    return _tracks.size() < MostSeries ? &_tracks[series] : nullptr;
+}
+
+void Ledger::Clear()
+{
+    const std::lock_guard lock(_mutex);
+    _tracks.clear();
+}
+
+bool Ledger::Take(const Series &series, Stamp stamp)
+{
+    const std::lock_guard lock(_mutex);
+    Track *track = FindOrAdd(series);
+    if (track == nullptr)
+    {
+        return true;
+    }
+    if (track->Whole.Contains(stamp) || !track->Had.insert(stamp).second)
+    {
+        return false;
+    }
+    if (track->Had.size() > MostStamps)
+    {
+        track->Floor = *track->Had.begin() + 1;
+        track->Had.erase(track->Had.begin());
+    }
+    if (track->Span)
+    {
+        track->Span->End = std::max(track->Span->End, stamp + 1);
+    }
+    return true;
+}
+
+void Ledger::Undo(const Series &series, Stamp stamp)
+{
+    const std::lock_guard lock(_mutex);
+    if (const auto found = _tracks.find(series); found != _tracks.end())
+    {
+        found->second.Had.erase(stamp);
+    }
+}
+
+void Ledger::SetWhole(const Series &series, Range range)
+{
+    const std::lock_guard lock(_mutex);
+    if (Track *track = FindOrAdd(series); track != nullptr && !range.IsEmpty())
+    {
+        track->Whole.Add(range);
+        track->Had.erase(track->Had.lower_bound(range.First), track->Had.lower_bound(range.End));
+    }
+}
+
+void Ledger::SetSpan(const Series &series, Range stamps)
+{
+    const std::lock_guard lock(_mutex);
+    Track *track = FindOrAdd(series);
+    if (track == nullptr || stamps.IsEmpty())
+    {
+        return;
+    }
+    if (!track->Had.empty())
+    {
+        stamps.End = std::max(stamps.End, *track->Had.rbegin() + 1);
+    }
+    track->Span = track->Span ? Range{std::min(track->Span->First, stamps.First),
+                                      std::max(track->Span->End, stamps.End)}
+                              : stamps;
+}
+
+Ledger::Gap Ledger::GapOf(const Series &series, const Track &track, Range gap)
+{
+    const auto end = track.Had.lower_bound(gap.End);
+    auto first = end;
+    for (std::size_t count = 0; first != track.Had.begin() && *std::prev(first) >= gap.First; ++count)
+    {
+        if (count == MostHad)
+        {
+            gap.First = *first;
+            break;
+        }
+        --first;
+    }
+    return {series, gap, {first, end}};
+}
+
+std::optional<Ledger::Gap> Ledger::NewestGap(const std::string &node, const std::string &message,
+                                             bool andNewest) const
+{
+    const std::lock_guard lock(_mutex);
+    const auto begin = _tracks.lower_bound({node, message, 0});
+    auto track = _tracks.upper_bound({node, message, std::numeric_limits<std::uint64_t>::max()});
+    bool isLast = true;
+    while (track != begin)
+    {
+        --track;
+        const auto &[series, state] = *track;
+        const bool wasLast = std::exchange(isLast, false);
+        if (!state.Span)
+        {
+            continue;
+        }
+        Range within{std::max(state.Span->First, state.Floor), state.Span->End};
+        auto gap = state.Whole.NewestGap(within);
+        const bool isNewest = gap && wasLast && gap->End == state.Span->End;
+        if (isNewest && !andNewest)
+        {
+            within.End = gap->First;
+            gap = state.Whole.NewestGap(within);
+        }
+        if (gap)
+        {
+            Gap found = GapOf(series, state, *gap);
+            found.IsNewest = isNewest && andNewest;
+            return found;
+        }
+    }
+    return std::nullopt;
+}
+
+Ledger::Count Ledger::Counted() const
+{
+    const std::lock_guard lock(_mutex);
+    Count count;
+    count.Series = _tracks.size();
+    for (const auto &[series, track] : _tracks)
+    {
+        count.Stamps += track.Had.size();
+        count.Ranges += track.Whole.Size();
+    }
+    return count;
+}
+
+}  // namespace Rabit::Backfill

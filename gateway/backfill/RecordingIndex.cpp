@@ -1,0 +1,249 @@
+#include "backfill/RecordingIndex.h"
+
+#include <rabit/base/LittleEndian.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+
+#include "recording/mcap/ChunkReader.h"
+#include "recording/mcap/RecordCodec.h"
+#include "recording/mcap/RecordScanner.h"
+
+namespace Rabit::Backfill
+{
+namespace
+{
+
+// A record with a longer content, but for a chunk, is not looked at.
+constexpr std::uint64_t LargestLookedAt = 16U << 20;
+
+bool IsNamedAs(const std::string &file, const std::string &node)
+{
+    return file.starts_with(node + "_") && file.ends_with(".mcap");
+}
+
+}  // namespace
+
+void RecordingIndex::Refresh(bool isOver)
+{
+    std::set<std::string> present;
+    std::error_code error;
+    for (const auto &entry : std::filesystem::directory_iterator(_folder, error))
+    {
+        const std::string name = entry.path().filename().string();
+        if (IsNamedAs(name, _node) && entry.is_regular_file(error) && !entry.is_symlink(error))
+        {
+            present.insert(name);
+            File &file = _files[name];
+            file.Path = entry.path().string();
+        }
+    }
+    std::erase_if(_files, [&present](const auto &file) { return !present.contains(file.first); });
+    for (auto &[name, file] : _files)
+    {
+        if (!file.IsOver)
+        {
+            ReadOn(file, !isOver && name == _files.rbegin()->first);
+        }
+    }
+}
+
+void RecordingIndex::ReadOn(File &file, bool mayGrow)
+try
+{
+    Mcap::FileSource source(file.Path);
+    std::array<std::uint8_t, Mcap::RecordHead> bytes{};
+    std::uint64_t offset = std::max<std::uint64_t>(file.ReadUntil, Mcap::Magic.size());
+    std::uint64_t chunk = 0;
+    std::uint64_t chunkLength = 0;
+    // A chunk is taken with all of its indexes, or later.
+    std::uint64_t whole = offset;
+    std::vector<Mcap::Bytes> indexes;
+    std::uint64_t endTime = 0;
+    const auto takeChunk = [&]
+    {
+        for (const Mcap::Bytes &index : indexes)
+        {
+            TakeIndex(file, chunk, chunkLength, index);
+        }
+        file.NewestLog = std::max(file.NewestLog, endTime);
+        indexes.clear();
+        chunkLength = 0;
+        whole = offset;
+    };
+    while (offset + bytes.size() <= source.Size() && source.Read(offset, bytes))
+    {
+        const Mcap::Head head = Mcap::ReadHead(bytes);
+        if (head.Code == 0 || head.Length > source.Size() - offset - bytes.size())
+        {
+            break;
+        }
+        const auto code = static_cast<Mcap::Opcode>(head.Code);
+        if (chunkLength > 0 && code != Mcap::Opcode::MessageIndex)
+        {
+            takeChunk();
+        }
+        Mcap::Bytes content;
+        if ((code == Mcap::Opcode::MessageIndex || code == Mcap::Opcode::Metadata) &&
+            head.Length <= LargestLookedAt)
+        {
+            content.resize(static_cast<std::size_t>(head.Length));
+            if (!source.Read(offset + bytes.size(), content))
+            {
+                break;
+            }
+        }
+        if (code == Mcap::Opcode::Chunk)
+        {
+            chunk = offset;
+            chunkLength = bytes.size() + head.Length;
+            std::array<std::uint8_t, 16> times{};
+            source.Read(offset + bytes.size(), times);
+            endTime = LittleEndian::Read<std::uint64_t>(std::span(times).subspan(8));
+        }
+        else if (code == Mcap::Opcode::MessageIndex)
+        {
+            indexes.push_back(std::move(content));
+        }
+        else if (code == Mcap::Opcode::Metadata)
+        {
+            if (auto metadata = Mcap::Read<Mcap::Metadata>(content))
+            {
+                file.Metadata[metadata->Name] = std::move(metadata->Values);
+            }
+        }
+        offset += bytes.size() + head.Length;
+        if (code == Mcap::Opcode::DataEnd)
+        {
+            file.IsOver = true;
+            break;
+        }
+        whole = chunkLength > 0 ? whole : offset;
+    }
+    if (chunkLength > 0 && !mayGrow)
+    {
+        takeChunk();
+    }
+    file.ReadUntil = whole;
+    const auto own = file.Metadata.find("rabit.file");
+    file.IsOwn =
+        own != file.Metadata.end() && own->second.contains("node") && own->second.at("node") == _node;
+}
+catch (const std::runtime_error &)
+{
+    // It was removed meanwhile.
+}
+
+void RecordingIndex::TakeIndex(File &file, std::uint64_t chunk, std::uint64_t length, Mcap::ByteView content)
+{
+    const auto index = Mcap::Read<Mcap::MessageIndex>(content);
+    if (!index || index->Entries.empty())
+    {
+        return;
+    }
+    const std::uint16_t channel = index->ChannelId;
+    if (!file.Channels.contains(channel) && !file.OtherChannels.contains(channel))
+    {
+        LearnChannels(file, chunk, length);
+        if (!file.Channels.contains(channel))
+        {
+            file.OtherChannels.insert(channel);
+        }
+    }
+    if (file.Channels.contains(channel))
+    {
+        const auto [first, last] = std::minmax_element(index->Entries.begin(), index->Entries.end());
+        file.Pieces.push_back({chunk, length, channel, first->first, last->first});
+    }
+}
+
+void RecordingIndex::LearnChannels(File &file, std::uint64_t chunk, std::uint64_t length)
+{
+    const Mcap::Bytes *records = Open(file.Path, chunk, length);
+    if (records == nullptr)
+    {
+        return;
+    }
+    Mcap::RecordIterator iterator(*records);
+    while (const auto record = iterator.Next())
+    {
+        if (record->Code == static_cast<std::uint8_t>(Mcap::Opcode::Channel))
+        {
+            auto channel = Mcap::Read<Mcap::Channel>(record->Content);
+            if (channel && _wants(*channel))
+            {
+                const std::uint16_t id = channel->Id;
+                file.Channels.emplace(id, std::move(*channel));
+            }
+        }
+    }
+}
+
+const Mcap::Bytes *RecordingIndex::Open(const std::string &path, std::uint64_t offset, std::uint64_t length)
+{
+    const auto known =
+        std::find_if(_open.begin(), _open.end(),
+                     [&](const OpenChunk &chunk) { return chunk.Offset == offset && chunk.Path == path; });
+    if (known != _open.end())
+    {
+        return &known->Records;
+    }
+    try
+    {
+        Mcap::FileSource source(path);
+        if (length > source.Size() || offset > source.Size() - length)
+        {
+            return nullptr;
+        }
+        Mcap::Bytes bytes(static_cast<std::size_t>(length));
+        if (!source.Read(offset, bytes))
+        {
+            return nullptr;
+        }
+        const auto chunk = Mcap::Read<Mcap::Chunk>(Mcap::ByteView(bytes).subspan(Mcap::RecordHead));
+        Mcap::Bytes room;
+        Mcap::ByteView records;
+        if (!chunk || !Mcap::OpenChunk(*chunk, room, records).empty())
+        {
+            return nullptr;
+        }
+        _open.push_back({path, offset, Mcap::Bytes(records.begin(), records.end())});
+    }
+    catch (const std::runtime_error &)
+    {
+        return nullptr;
+    }
+    if (_open.size() > MostOpenChunks)
+    {
+        _open.pop_front();
+    }
+    return &_open.back().Records;
+}
+
+bool RecordingIndex::Visit(const File &file, const Piece &piece,
+                           const std::function<void(const Mcap::Message &message)> &visit)
+{
+    const Mcap::Bytes *records = Open(file.Path, piece.Offset, piece.Length);
+    if (records == nullptr)
+    {
+        return false;
+    }
+    Mcap::RecordIterator iterator(*records);
+    while (const auto record = iterator.Next())
+    {
+        if (record->Code == static_cast<std::uint8_t>(Mcap::Opcode::Message))
+        {
+            const auto message = Mcap::Read<Mcap::Message>(record->Content);
+            if (message && message->ChannelId == piece.Channel)
+            {
+                visit(*message);
+            }
+        }
+    }
+    return true;
+}
+
+}  // namespace Rabit::Backfill

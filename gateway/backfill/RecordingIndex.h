@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "recording/mcap/FileSource.h"
+#include "recording/mcap/McapRecords.h"
+
+namespace Rabit::Backfill
+{
+
+// Where the messages of chosen channels are in the recordings of one node in a folder. Each file is read
+// once, as it grows, and only the heads of its records. Not thread-safe.
+class RecordingIndex
+{
+public:
+    // Chunks that are kept in memory: successive questions are about the same ones.
+    static constexpr std::size_t MostOpenChunks = 4;
+
+    using Wants = std::function<bool(const Mcap::Channel &channel)>;
+    RecordingIndex(std::string folder, std::string node, Wants wants)
+        : _folder(std::move(folder)), _node(std::move(node)), _wants(std::move(wants))
+    {
+    }
+
+    // The messages of one channel in one chunk.
+    struct Piece
+    {
+        std::uint64_t Offset = 0;  // of the chunk in the file
+        std::uint64_t Length = 0;
+        std::uint16_t Channel = 0;
+        std::uint64_t FirstLog = 0;  // log times
+        std::uint64_t LastLog = 0;
+    };
+    struct File
+    {
+        std::string Path;
+        std::uint64_t ReadUntil = 0;
+        bool IsOver = false;                              // nothing more will come
+        bool IsOwn = false;                               // of this node
+        std::map<std::uint16_t, Mcap::Channel> Channels;  // that are wanted
+        std::set<std::uint16_t> OtherChannels;
+        std::map<std::string, Mcap::TextMap> Metadata;  // the last of each name
+        std::vector<Piece> Pieces;
+        std::uint64_t NewestLog = 0;  // of all channels
+    };
+
+    // Looks for new files, and reads what has come. Files that are gone are forgotten. The last chunk of the
+    // newest file is left for later, since its indexes may still be being written, unless `isOver`.
+    void Refresh(bool isOver = false);
+    // By their names, the oldest first; only those of this node count.
+    const std::map<std::string, File> &Files() const { return _files; }
+    // Calls `visit` with each message of that piece; false if the chunk cannot be read, as if its file was
+    // removed.
+    bool Visit(const File &file, const Piece &piece,
+               const std::function<void(const Mcap::Message &message)> &visit);
+
+private:
+    struct OpenChunk
+    {
+        std::string Path;
+        std::uint64_t Offset = 0;
+        Mcap::Bytes Records;
+    };
+
+    void ReadOn(File &file, bool mayGrow);
+    void TakeIndex(File &file, std::uint64_t chunk, std::uint64_t length, Mcap::ByteView content);
+    void LearnChannels(File &file, std::uint64_t chunk, std::uint64_t length);
+    // Null if it cannot be read. Valid until the next call.
+    const Mcap::Bytes *Open(const std::string &path, std::uint64_t offset, std::uint64_t length);
+
+    const std::string _folder;
+    const std::string _node;
+    const Wants _wants;
+    std::map<std::string, File> _files;
+    std::deque<OpenChunk> _open;
+};
+
+}  // namespace Rabit::Backfill

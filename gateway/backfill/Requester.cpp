@@ -1,0 +1,299 @@
+#include "backfill/Requester.h"
+
+#include <algorithm>
+
+#include "backfill/PostsCodec.h"
+
+namespace Rabit::Backfill
+{
+namespace
+{
+
+std::string TextOf(Result result)
+{
+    switch (result)
+    {
+        case Result::NOT_ALLOWED:
+            return "it does not let this node have them (`backfill_to` there)";
+        case Result::UNKNOWN:
+            return "it does not record that message, or does not publish it";
+        default:
+            return "it cannot read its recording";
+    }
+}
+
+}  // namespace
+
+void Requester::SetNode(const std::string &name, std::uint64_t incarnation, bool isUp,
+                        const std::vector<std::string> &messages, Duration now)
+{
+    Node &node = _nodes[name];
+    const bool isOther = node.Incarnation != incarnation;
+    const bool came = isUp && !node.IsUp;
+    for (const std::string &message : messages)
+    {
+        node.Messages.try_emplace(message);
+    }
+    for (auto &[message, wanted] : node.Messages)
+    {
+        if (isOther)
+        {
+            wanted.Open.reset();
+            wanted.NotBefore = now;
+        }
+        if (isOther || came)
+        {
+            wanted.NextSpans = now;
+            wanted.NextLook = now;
+            wanted.Look = ShortestLook;
+        }
+        if (came && wanted.Open)
+        {
+            wanted.Open->At = now;
+        }
+    }
+    node.Incarnation = incarnation;
+    node.IsUp = isUp;
+}
+
+void Requester::StartOver(Duration now)
+{
+    for (auto &[name, node] : _nodes)
+    {
+        for (auto &[message, wanted] : node.Messages)
+        {
+            wanted = Wanted();
+            wanted.NextSpans = now;
+            wanted.NextLook = now;
+            wanted.NotBefore = now;
+        }
+    }
+}
+
+const Requester::Asked *Requester::OpenQuestion(const Node &node)
+{
+    for (const auto &[message, wanted] : node.Messages)
+    {
+        if (wanted.Open)
+        {
+            return &*wanted.Open;
+        }
+    }
+    return nullptr;
+}
+
+std::optional<Requester::Asked> Requester::Next(const std::string &node, const std::string &message,
+                                                const Wanted &wanted, Duration now) const
+{
+    if (wanted.Open || now < wanted.NotBefore)
+    {
+        return std::nullopt;
+    }
+    Asked asked;
+    asked.At = now;
+    asked.What.name = message;
+    if (now >= wanted.NextSpans)
+    {
+        asked.What.kind = Kind::SPANS;
+        asked.What.to = static_cast<std::uint64_t>(_last.count());
+        return asked;
+    }
+    const auto gap = _ledger.NewestGap(node, message, now >= wanted.NextLook);
+    if (!gap)
+    {
+        return std::nullopt;
+    }
+    asked.LooksAtNewest = gap->IsNewest;
+    asked.What.kind = Kind::POSTS;
+    asked.What.incarnation = gap->Of.Incarnation;
+    asked.What.from = gap->Stamps.First;
+    asked.What.to = gap->Stamps.End;
+    asked.What.had = PostsCodec::EncodeStamps(gap->Had, gap->Stamps.First);
+    return asked;
+}
+
+// The messages of a node take turns.
+std::optional<Requester::Asking> Requester::NextOf(const std::string &name, Node &node, Duration now)
+{
+    auto next = node.Messages.upper_bound(node.LastAsked);
+    for (std::size_t i = 0; i < node.Messages.size(); ++i, ++next)
+    {
+        next = next == node.Messages.end() ? node.Messages.begin() : next;
+        auto &[message, wanted] = *next;
+        if (std::optional<Asked> asked = Next(name, message, wanted, now))
+        {
+            asked->What.number = _nextNumber++;
+            node.LastAsked = message;
+            wanted.Open = std::move(asked);
+            return Asking{name, wanted.Open->What};
+        }
+    }
+    return std::nullopt;
+}
+
+// So do the nodes.
+std::vector<Requester::Asking> Requester::Due(Duration now)
+{
+    std::size_t open = 0;
+    for (auto &[name, node] : _nodes)
+    {
+        for (auto &[message, wanted] : node.Messages)
+        {
+            if (node.IsUp && wanted.Open && now - wanted.Open->At >= Patience)
+            {
+                wanted.Open.reset();
+            }
+        }
+        const Asked *asked = OpenQuestion(node);
+        open += node.IsUp && asked != nullptr && now - asked->At < Slow ? 1 : 0;
+    }
+    std::vector<Asking> due;
+    auto next = _nodes.upper_bound(_lastAsked);
+    for (std::size_t i = 0; i < _nodes.size() && open < MostAsked && now >= _restUntil; ++i, ++next)
+    {
+        next = next == _nodes.end() ? _nodes.begin() : next;
+        auto &[name, node] = *next;
+        if (!node.IsUp || OpenQuestion(node) != nullptr)
+        {
+            continue;
+        }
+        if (std::optional<Asking> asking = NextOf(name, node, now))
+        {
+            due.push_back(std::move(*asking));
+            _lastAsked = name;
+            ++open;
+        }
+    }
+    return due;
+}
+
+void Requester::Failed(const std::string &name, const Question &question, Duration now)
+{
+    Wanted &wanted = _nodes[name].Messages[question.name];
+    if (wanted.Open && wanted.Open->What == question)
+    {
+        wanted.Open.reset();
+        wanted.NotBefore = now + Pause;
+    }
+}
+
+std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &name, const Answer &answer,
+                                                            const Record &record, Duration now)
+{
+    const auto node = _nodes.find(name);
+    const auto wanted = node == _nodes.end() ? decltype(node->second.Messages.end())()
+                                             : node->second.Messages.find(answer.name);
+    if (node == _nodes.end() || wanted == node->second.Messages.end() || !wanted->second.Open ||
+        wanted->second.Open->What.kind != answer.kind || wanted->second.Open->What.number != answer.number ||
+        wanted->second.Open->What.incarnation != answer.incarnation)
+    {
+        // The answer to a question that was asked again meanwhile is one of these.
+        ++_malformed;
+        return std::nullopt;
+    }
+    const Asked asked = std::move(*wanted->second.Open);
+    wanted->second.Open.reset();
+    wanted->second.Refusal = answer.result == Result::OK ? "" : TextOf(answer.result);
+    if (answer.result != Result::OK)
+    {
+        wanted->second.NotBefore = now + Pause;
+        return std::nullopt;
+    }
+    if (answer.kind == Kind::SPANS)
+    {
+        wanted->second.NextSpans = now + LongestLook;
+        TakeSpans(name, answer);
+        return std::nullopt;
+    }
+    return TakePosts(name, asked, answer, record, wanted->second, now);
+}
+
+void Requester::TakeSpans(const std::string &node, const Answer &answer)
+{
+    const auto spans = PostsCodec::DecodeSpans(answer.bytes);
+    if (!spans)
+    {
+        ++_malformed;
+        return;
+    }
+    for (const PostsCodec::Span &span : *spans)
+    {
+        _ledger.SetSpan({node, answer.name, span.Incarnation}, span.Stamps);
+    }
+}
+
+std::optional<std::pair<Series, Range>> Requester::TakePosts(const std::string &node, const Asked &asked,
+                                                             const Answer &answer, const Record &record,
+                                                             Wanted &wanted, Duration now)
+{
+    const Range range{answer.from, answer.to};
+    const auto posts = PostsCodec::DecodePosts(answer.bytes, answer.from);
+    if (!posts || range.First < asked.What.from || range.End > asked.What.to ||
+        std::any_of(posts->begin(), posts->end(),
+                    [&range](const Post &post) { return !range.Contains(StampOf(post.SourceTime)); }))
+    {
+        ++_malformed;
+        wanted.NotBefore = now + Pause;
+        return std::nullopt;
+    }
+    if (asked.LooksAtNewest)
+    {
+        wanted.Look = posts->empty() ? std::min(2 * wanted.Look, LongestLook) : ShortestLook;
+        wanted.NextLook = now + wanted.Look;
+    }
+    if (!posts->empty())
+    {
+        _restUntil = now + Rest * std::min(now - asked.At, Slow);
+    }
+    const Series series{node, answer.name, answer.incarnation};
+    for (const Post &post : *posts)
+    {
+        const Stamp stamp = StampOf(post.SourceTime);
+        if (!_ledger.Take(series, stamp))
+        {
+            ++_repeated;
+        }
+        else if (record(series, post))
+        {
+            ++_recorded;
+        }
+        else
+        {
+            _ledger.Undo(series, stamp);
+            wanted.NotBefore = now + Pause;
+            return std::nullopt;
+        }
+    }
+    _ledger.SetWhole(series, range);
+    // Nothing of the range is whole: the origin has not written it yet.
+    if (range.IsEmpty())
+    {
+        wanted.NotBefore = now + std::chrono::seconds(1);
+        return std::nullopt;
+    }
+    return std::pair(series, range);
+}
+
+std::map<std::pair<std::string, std::string>, std::string> Requester::Refusals() const
+{
+    std::map<std::pair<std::string, std::string>, std::string> refusals;
+    for (const auto &[name, node] : _nodes)
+    {
+        for (const auto &[message, wanted] : node.Messages)
+        {
+            if (node.IsUp && !wanted.Refusal.empty())
+            {
+                refusals[{name, message}] = wanted.Refusal;
+            }
+        }
+    }
+    return refusals;
+}
+
+bool Requester::IsBusy() const
+{
+    return std::any_of(_nodes.begin(), _nodes.end(),
+                       [](const auto &entry) { return OpenQuestion(entry.second) != nullptr; });
+}
+
+}  // namespace Rabit::Backfill

@@ -1,0 +1,128 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "backfill.idl.h"
+#include "backfill/Ledger.h"
+
+namespace Rabit::Backfill
+{
+
+// Decides which posts to request from which node, and takes in the answers. MostAsked questions are open at
+// once: so the nodes of a fleet do not fill one channel together, and a cut or a restart costs little.
+//
+// Questions and answers travel as queue messages: while both ends live none is lost. A question is asked
+// again if it failed, if the node or this one restarted, and, to be safe, after Patience.
+//
+// A pure state machine; `now` never goes back. Not thread-safe.
+class Requester
+{
+public:
+    using Duration = std::chrono::nanoseconds;
+
+    static constexpr std::size_t MostAsked = 1;
+    // A question that is open for longer holds up no other node.
+    static constexpr Duration Slow = std::chrono::seconds(10);
+    // After an answer with posts, nothing is asked for this many times as long as the answer took. So the
+    // channel is free for live values and commands most of the time, whatever its capacity.
+    static constexpr int Rest = 4;
+    // From one look at the newest posts to the next: doubles up to the longest while nothing is missing.
+    static constexpr Duration ShortestLook = std::chrono::seconds(10);
+    static constexpr Duration LongestLook = std::chrono::seconds(60);
+    // Until a node that refused a question, or did not answer it, is asked again.
+    static constexpr Duration Pause = std::chrono::seconds(30);
+    // Time in which a node is UP until an answer is taken for lost.
+    static constexpr Duration Patience = std::chrono::seconds(120);
+
+    // The ledger must outlive the object. Posts older than `last` are not requested. Questions are numbered
+    // from `firstNumber` on, which is to be random: an answer to a question of an earlier incarnation of this
+    // node leaves out posts that were lost with it.
+    Requester(Ledger &ledger, std::chrono::seconds last, std::uint64_t firstNumber)
+        : _ledger(ledger), _last(last), _nextNumber(firstNumber)
+    {
+    }
+
+    // The state of a node, whenever it may have changed. `messages` are those to be requested from it.
+    void SetNode(const std::string &node, std::uint64_t incarnation, bool isUp,
+                 const std::vector<std::string> &messages, Duration now);
+
+    // The ledger was cleared: the nodes are asked anew what they have, and answers under way are dropped.
+    void StartOver(Duration now);
+
+    struct Asking
+    {
+        std::string Node;
+        Question What;
+    };
+    // The questions to send now. Failed must be called of each that cannot be delivered.
+    std::vector<Asking> Due(Duration now);
+    void Failed(const std::string &node, const Question &question, Duration now);
+
+    // Records a post; false if it cannot be recorded now.
+    using Record = std::function<bool(const Series &series, const Post &post)>;
+    // Takes in an answer of that node. Returns the range that is whole now; empty: none is.
+    std::optional<std::pair<Series, Range>> Answered(const std::string &node, const Answer &answer,
+                                                     const Record &record, Duration now);
+
+    // Posts that were recorded; that came and were there already; answers that nobody asked for, or that do
+    // not decode.
+    std::uint64_t Recorded() const { return _recorded; }
+    std::uint64_t Repeated() const { return _repeated; }
+    std::uint64_t Malformed() const { return _malformed; }
+    // Nodes that do not answer for that message, and why, by node and message.
+    std::map<std::pair<std::string, std::string>, std::string> Refusals() const;
+    // True if some question waits for its answer.
+    bool IsBusy() const;
+
+private:
+    struct Asked
+    {
+        Question What;
+        bool LooksAtNewest = false;
+        Duration At{0};
+    };
+    struct Wanted
+    {
+        std::optional<Asked> Open;
+        Duration NextSpans{0};
+        Duration NextLook{0};
+        Duration Look = ShortestLook;
+        Duration NotBefore{0};
+        std::string Refusal;
+    };
+    struct Node
+    {
+        std::uint64_t Incarnation = 0;
+        bool IsUp = false;
+        std::map<std::string, Wanted> Messages;
+        std::string LastAsked;
+    };
+
+    static const Asked *OpenQuestion(const Node &node);
+    std::optional<Asking> NextOf(const std::string &name, Node &node, Duration now);
+    std::optional<Asked> Next(const std::string &node, const std::string &message, const Wanted &wanted,
+                              Duration now) const;
+    void TakeSpans(const std::string &node, const Answer &answer);
+    std::optional<std::pair<Series, Range>> TakePosts(const std::string &node, const Asked &asked,
+                                                      const Answer &answer, const Record &record,
+                                                      Wanted &wanted, Duration now);
+
+    Ledger &_ledger;
+    const std::chrono::seconds _last;
+    std::uint64_t _nextNumber;
+    std::map<std::string, Node> _nodes;
+    std::string _lastAsked;  // of the nodes
+    Duration _restUntil{0};
+    std::uint64_t _recorded = 0;
+    std::uint64_t _repeated = 0;
+    std::uint64_t _malformed = 0;
+};
+
+}  // namespace Rabit::Backfill

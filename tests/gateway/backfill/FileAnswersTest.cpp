@@ -1,0 +1,109 @@
+#include "backfill/FileAnswers.h"
+
+#include <gtest/gtest.h>
+
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+namespace Rabit::Backfill
+{
+namespace
+{
+
+class FileAnswersTest : public testing::Test
+{
+protected:
+    FileAnswersTest()
+    {
+        std::string pattern = (std::filesystem::temp_directory_path() / "backfillXXXXXX").string();
+        folder = ::mkdtemp(pattern.data());
+        std::filesystem::create_directory(folder / "shown");
+        std::ofstream(folder / "shown" / "a.txt") << "hello";
+        std::ofstream(folder / "secret.txt") << "secret";
+        shown = std::make_unique<FileAnswers>((folder / "shown").string(),
+                                              [](const std::string &node) { return node == "ground"; });
+    }
+    ~FileAnswersTest() override { std::filesystem::remove_all(folder); }
+
+    std::filesystem::path folder;
+    std::unique_ptr<FileAnswers> shown;
+
+    Answer Ask(const std::string &name, Kind kind = Kind::FACTS, std::uint64_t from = 0,
+               std::uint64_t to = 100, const std::string &node = "ground")
+    {
+        Question question;
+        question.kind = kind;
+        question.name = name;
+        question.from = from;
+        question.to = to;
+        question.number = 77;
+        return shown->Of(node, question);
+    }
+};
+
+TEST_F(FileAnswersTest, SizeAndHashAreTold)
+{
+    const Answer answer = Ask("a.txt");
+    EXPECT_EQ(answer.result, Result::OK);
+    EXPECT_EQ(answer.number, 77U);
+    EXPECT_EQ(answer.size, 5U);
+    ASSERT_EQ(answer.bytes.size(), 32U);
+    EXPECT_EQ(answer.bytes[0], 0x2c) << "SHA-256 of hello";
+    EXPECT_EQ(answer.bytes[31], 0x24);
+}
+
+TEST_F(FileAnswersTest, AChangedFileHasAnotherHash)
+{
+    const auto before = Ask("a.txt").bytes;
+    std::ofstream(folder / "shown" / "a.txt", std::ios::app) << " world";
+    EXPECT_NE(Ask("a.txt").bytes, before);
+}
+
+TEST_F(FileAnswersTest, PartsAreSentAsFarAsTheFileGoes)
+{
+    const Answer answer = Ask("a.txt", Kind::PART, 1, 100);
+    EXPECT_EQ(answer.result, Result::OK);
+    EXPECT_EQ(std::string(answer.bytes.begin(), answer.bytes.end()), "ello");
+    EXPECT_EQ(answer.to, 5U);
+    EXPECT_EQ(Ask("a.txt", Kind::PART, 6, 7).result, Result::FAILED);
+    EXPECT_EQ(Ask("a.txt", Kind::PART, 3, 2).result, Result::FAILED);
+}
+
+TEST_F(FileAnswersTest, ALargeQuestionGetsABoundedAnswer)
+{
+    std::ofstream(folder / "shown" / "large") << std::string(1'000'000, 'x');
+    EXPECT_EQ(Ask("large", Kind::PART, 0, ~std::uint64_t{0}).bytes.size(), FileAnswers::LargestPart);
+}
+
+TEST_F(FileAnswersTest, NoWayLeadsOutOfTheFolder)
+{
+    std::filesystem::create_symlink(folder / "secret.txt", folder / "shown" / "link");
+    std::filesystem::create_directory(folder / "shown" / "below");
+    ::mkfifo((folder / "shown" / "pipe").c_str(), 0600);
+    for (const char *name : {"../secret.txt", "link", "below", "below/x", "pipe", ".", "..", "", "none"})
+    {
+        EXPECT_EQ(Ask(name).result, Result::UNKNOWN) << name;
+        EXPECT_TRUE(Ask(name, Kind::PART).bytes.empty()) << name;
+    }
+    EXPECT_EQ(Ask((folder / "secret.txt").string()).result, Result::UNKNOWN);
+    EXPECT_EQ(Ask(std::string("a.txt\0x", 7)).result, Result::UNKNOWN);
+}
+
+TEST_F(FileAnswersTest, OnlyNamedNodesMayFetch)
+{
+    EXPECT_EQ(Ask("a.txt", Kind::FACTS, 0, 0, "uav2").result, Result::NOT_ALLOWED);
+    EXPECT_EQ(Ask("a.txt", Kind::PART, 0, 5, "uav2").result, Result::NOT_ALLOWED);
+}
+
+TEST_F(FileAnswersTest, WithoutItsFolderThereIsNoFile)
+{
+    std::filesystem::remove_all(folder);
+    EXPECT_EQ(Ask("a.txt").result, Result::UNKNOWN);
+}
+
+}  // namespace
+}  // namespace Rabit::Backfill

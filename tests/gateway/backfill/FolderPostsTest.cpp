@@ -1,0 +1,289 @@
+// The posts in recordings: of former incarnations, of a file that grows, and of files that are gone.
+#include "backfill/FolderPosts.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+
+#include "recording/mcap/McapWriter.h"
+
+namespace Rabit::Backfill
+{
+namespace
+{
+
+constexpr std::uint64_t Second = 1'000'000'000;
+constexpr std::uint64_t Begin = 1'795'725'000 * Second;
+constexpr std::int64_t SourceToLog = 5'000'000'123;
+constexpr std::uint64_t Always = 1'000'000;
+
+// A recording that is being written.
+class Recording final : public Mcap::ByteSink
+{
+public:
+    Recording(const std::filesystem::path &path, const std::string &node, std::uint64_t incarnation)
+        : _stream(path, std::ios::binary)
+    {
+        _writer = std::make_unique<Mcap::McapWriter>(*this, Mcap::McapWriter::Options{"test", "rabit", true});
+        _writer->AddMetadata({"rabit.file", {{"node", node}}});
+        _writer->AddMetadata({"rabit.clock",
+                              {{"incarnation", std::to_string(incarnation)},
+                               {"source_to_log_ns", std::to_string(SourceToLog)}}});
+        const std::uint16_t schema = _writer->AddSchema("Pose", "omgidl", "struct Pose {};");
+        _pose = *_writer->AddChannel(schema, node + "/Pose", "cdr",
+                                     {{"rabit.kind", "posted"}, {"rabit.node", node}});
+        _other = *_writer->AddChannel(schema, node + "/Other", "cdr",
+                                      {{"rabit.kind", "posted"}, {"rabit.node", node}});
+    }
+    bool Write(Mcap::ByteView bytes) override
+    {
+        _stream.write(reinterpret_cast<const char *>(bytes.data()),
+                      static_cast<std::streamsize>(bytes.size()));
+        return _stream.good();
+    }
+
+    // Posts at that time after Begin; recorded a moment later.
+    void Post(std::uint64_t at, std::size_t size = 10, std::uint64_t delay = 1000)
+    {
+        const Mcap::Bytes bytes(size, static_cast<std::uint8_t>(at / 1'000'000));
+        _writer->Add({_pose, 0, Begin + at + delay, Begin + at, bytes});
+    }
+    // Something else is recorded, so that it is known how far the recording has come.
+    void Tick(std::uint64_t at)
+    {
+        const Mcap::Bytes bytes(3);
+        _writer->Add({_other, 0, Begin + at, Begin + at, bytes});
+        Flush();
+    }
+    void Flush()
+    {
+        _writer->FinishChunks();
+        _stream.flush();
+    }
+    void End()
+    {
+        _writer->Finish();
+        _stream.flush();
+    }
+
+private:
+    std::ofstream _stream;
+    std::unique_ptr<Mcap::McapWriter> _writer;
+    std::uint16_t _pose = 0;
+    std::uint16_t _other = 0;
+};
+
+Stamp StampAfter(std::uint64_t at)
+{
+    return StampOf(static_cast<std::int64_t>(Begin + at) - SourceToLog);
+}
+
+class FolderPostsTest : public testing::Test
+{
+protected:
+    FolderPostsTest()
+    {
+        std::string pattern = (std::filesystem::temp_directory_path() / "postsXXXXXX").string();
+        folder = ::mkdtemp(pattern.data());
+        posts = std::make_unique<FolderPosts>(folder.string(), "uav1");
+    }
+    ~FolderPostsTest() override { std::filesystem::remove_all(folder); }
+
+    std::unique_ptr<Recording> NewFile(int number, std::uint64_t incarnation = 7,
+                                       const std::string &node = "uav1")
+    {
+        return std::make_unique<Recording>(
+            folder / (node + "_00000" + std::to_string(number) + "_20261123T024640Z.mcap"), node,
+            incarnation);
+    }
+    std::vector<std::int64_t> Times(Range range, const std::vector<Stamp> &had = {},
+                                    std::size_t most = 1'000'000)
+    {
+        std::vector<std::int64_t> times;
+        found = posts->Read("Pose", 7, range, had, most);
+        for (const Post &post : found.Posts)
+        {
+            times.push_back(post.SourceTime + SourceToLog - static_cast<std::int64_t>(Begin));
+        }
+        return times;
+    }
+
+    std::filesystem::path folder;
+    std::unique_ptr<FolderPosts> posts;
+    PostStore::Found found;
+};
+
+TEST_F(FolderPostsTest, WithoutRecordingsThereIsNothing)
+{
+    EXPECT_TRUE(posts->Spans("Pose", Always).empty());
+    EXPECT_TRUE(Times({0, ~Stamp{0}}).empty());
+}
+
+TEST_F(FolderPostsTest, AnEndedRecordingIsReadAsAWhole)
+{
+    const auto file = NewFile(1);
+    file->Post(1 * Second);
+    file->Post(2 * Second);
+    file->End();
+    const auto spans = posts->Spans("Pose", Always);
+    ASSERT_EQ(spans.size(), 1U);
+    EXPECT_EQ(spans[0].Incarnation, 7U);
+    EXPECT_EQ(spans[0].Stamps.First, StampAfter(1 * Second));
+    EXPECT_GT(spans[0].Stamps.End, StampAfter(2 * Second));
+    EXPECT_EQ(Times(spans[0].Stamps), (std::vector<std::int64_t>{1'000'000'000, 2'000'000'000}));
+    EXPECT_EQ(found.First, spans[0].Stamps.First);
+    EXPECT_EQ(found.Posts[0].Bytes, std::vector<std::uint8_t>(10, static_cast<std::uint8_t>(1000)));
+    EXPECT_TRUE(posts->Spans("Other", Always).empty());
+}
+
+TEST_F(FolderPostsTest, ThePresentRecordingIsWholeUpToASecondBeforeItsEnd)
+{
+    posts->SetIncarnation(7);
+    const auto file = NewFile(1);
+    file->Post(1 * Second);
+    file->Tick(4 * Second);
+    file->Tick(5 * Second);  // the last chunk is left for later
+    EXPECT_EQ(posts->Spans("Pose", Always).at(0).Stamps.End, StampAfter(3 * Second));
+    file->Post(6 * Second);
+    file->Tick(9 * Second);
+    file->Tick(10 * Second);
+    const Range stamps = posts->Spans("Pose", Always).at(0).Stamps;
+    EXPECT_EQ(stamps.End, StampAfter(8 * Second));
+    EXPECT_EQ(Times(stamps), (std::vector<std::int64_t>{1'000'000'000, 6'000'000'000}));
+}
+
+TEST_F(FolderPostsTest, PostsThatTheOtherNodeHasAreLeftOut)
+{
+    const auto file = NewFile(1);
+    for (std::uint64_t at = 1; at <= 4; ++at)
+    {
+        file->Post(at * Second);
+    }
+    file->End();
+    const Range stamps = posts->Spans("Pose", Always).at(0).Stamps;
+    EXPECT_EQ(Times(stamps, {StampAfter(1 * Second), StampAfter(3 * Second)}),
+              (std::vector<std::int64_t>{2'000'000'000, 4'000'000'000}));
+}
+
+TEST_F(FolderPostsTest, TheNewestComeFirstAsManyAsFit)
+{
+    const auto file = NewFile(1);
+    for (std::uint64_t at = 1; at <= 9; ++at)
+    {
+        file->Post(at * Second, 100);
+        file->Flush();
+    }
+    file->End();
+    Range stamps = posts->Spans("Pose", Always).at(0).Stamps;
+    EXPECT_EQ(Times(stamps, {}, 250), (std::vector<std::int64_t>{8'000'000'000, 9'000'000'000}));
+    EXPECT_EQ(found.First, StampAfter(8 * Second));
+    stamps.End = found.First;
+    EXPECT_EQ(Times(stamps, {}, 50), (std::vector<std::int64_t>{7'000'000'000})) << "one at least";
+    stamps.End = found.First;
+    EXPECT_EQ(Times(stamps, {}, 600).size(), 6U);
+    EXPECT_EQ(found.First, stamps.First) << "all are read";
+}
+
+TEST_F(FolderPostsTest, LargeAndSmallPostsOfOneTimeAreReadTogether)
+{
+    const auto file = NewFile(1);
+    for (std::uint64_t at = 1; at <= 20; ++at)
+    {
+        file->Post(at * Second / 100, at % 2 == 0 ? 20'000 : 100);  // in two chunks
+    }
+    file->End();
+    Range stamps = posts->Spans("Pose", Always).at(0).Stamps;
+    std::size_t read = 0;
+    while (!stamps.IsEmpty())
+    {
+        const auto times = Times(stamps, {}, 50'000);
+        EXPECT_TRUE(std::is_sorted(times.begin(), times.end()));
+        read += times.size();
+        stamps.End = found.First;
+    }
+    EXPECT_EQ(read, 20U);
+}
+
+TEST_F(FolderPostsTest, AStateThatIsRepeatedInTheNextFileIsOnePost)
+{
+    const auto first = NewFile(1);
+    first->Post(1 * Second);
+    first->End();
+    const auto second = NewFile(2);
+    second->Post(1 * Second, 10, 60 * Second);  // repeated at its beginning
+    second->Post(70 * Second);
+    second->End();
+    EXPECT_EQ(Times(posts->Spans("Pose", Always).at(0).Stamps),
+              (std::vector<std::int64_t>{1'000'000'000, 70'000'000'000}));
+}
+
+TEST_F(FolderPostsTest, APostFromBeforeTheRecordingIsInTheSpan)
+{
+    const auto file = NewFile(1);
+    file->Post(1 * Second, 10, 100 * Second);
+    file->Post(102 * Second);
+    file->End();
+    const Range stamps = posts->Spans("Pose", Always).at(0).Stamps;
+    EXPECT_EQ(stamps.First, StampAfter(1 * Second));
+    EXPECT_EQ(Times(stamps).size(), 2U);
+}
+
+TEST_F(FolderPostsTest, EachIncarnationHasItsSpanAndOldOnesAreLeftOut)
+{
+    NewFile(1, 6)->Post(1 * Second);  // killed: nothing was flushed
+    const auto old = NewFile(2, 7);
+    old->Post(2 * Second);
+    old->Flush();  // killed later
+    const auto present = NewFile(3, 8);
+    present->Post(100 * Second);
+    present->End();
+    const auto spans = posts->Spans("Pose", Always);
+    ASSERT_EQ(spans.size(), 2U);
+    EXPECT_EQ(spans[0].Incarnation, 7U);
+    EXPECT_EQ(spans[1].Incarnation, 8U);
+    EXPECT_EQ(posts->Spans("Pose", 50).size(), 1U) << "only the last 50 seconds";
+}
+
+TEST_F(FolderPostsTest, FilesOfOtherNodesAndOnesThatAreGoneDoNotCount)
+{
+    NewFile(1, 7, "uav1_x")->End();
+    const auto other = NewFile(2, 7, "uav2");
+    other->Post(1 * Second);
+    other->End();
+    const auto own = NewFile(3);
+    own->Post(1 * Second);
+    own->End();
+    EXPECT_EQ(posts->Spans("Pose", Always).size(), 1U);
+    std::filesystem::remove_all(folder);
+    std::filesystem::create_directory(folder);
+    EXPECT_TRUE(posts->Spans("Pose", Always).empty());
+}
+
+TEST_F(FolderPostsTest, AFileOfAnyBytesIsRead)
+{
+    const auto file = NewFile(1);
+    file->Post(1 * Second);
+    file->End();
+    const auto path = std::filesystem::directory_iterator(folder)->path();
+    std::vector<char> bytes(std::filesystem::file_size(path));
+    std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    for (std::size_t i = 8; i < bytes.size(); i += 3)
+    {
+        std::vector<char> spoiled = bytes;
+        spoiled[i] = static_cast<char>(spoiled[i] ^ 0xFF);
+        std::ofstream(path, std::ios::binary)
+            .write(spoiled.data(), static_cast<std::streamsize>(bytes.size()));
+        FolderPosts fresh(folder.string(), "uav1");
+        for (const PostsCodec::Span &span : fresh.Spans("Pose", Always))
+        {
+            fresh.Read("Pose", span.Incarnation, span.Stamps, {}, 1000);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace Rabit::Backfill

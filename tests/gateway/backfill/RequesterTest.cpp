@@ -1,0 +1,206 @@
+#include "backfill/Requester.h"
+
+#include <gtest/gtest.h>
+
+#include "backfill/PostsCodec.h"
+
+namespace Rabit::Backfill
+{
+namespace
+{
+
+using namespace std::chrono_literals;
+
+class RequesterTest : public testing::Test
+{
+protected:
+    RequesterTest() { requester.SetNode("uav1", 7, true, {"Pose"}, 0s); }
+
+    static Answer AnswerTo(const Question &question)
+    {
+        Answer answer;
+        answer.kind = question.kind;
+        answer.number = question.number;
+        answer.name = question.name;
+        answer.incarnation = question.incarnation;
+        answer.from = question.from;
+        answer.to = question.to;
+        return answer;
+    }
+    // Tells the spans, and returns the question for posts.
+    Question AskForPosts()
+    {
+        const auto spans = requester.Due(0s);
+        Answer answer = AnswerTo(spans.at(0).What);
+        answer.bytes = PostsCodec::EncodeSpans({{7, {1000, 2000}}});
+        requester.Answered("uav1", answer, record, 0s);
+        return requester.Due(0s).at(0).What;
+    }
+    Answer WithPost(const Question &question, std::int64_t time) const
+    {
+        Answer answer = AnswerTo(question);
+        answer.bytes = PostsCodec::EncodePosts({{time, {1}}}, question.from);
+        return answer;
+    }
+
+    Ledger ledger;
+    Requester requester{ledger, 3600s, 100};
+    bool hasRoom = true;
+    std::vector<Post> recorded;
+    Requester::Record record = [this](const Series &, const Post &post)
+    {
+        if (hasRoom)
+        {
+            recorded.push_back(post);
+        }
+        return hasRoom;
+    };
+};
+
+TEST_F(RequesterTest, ANodeIsAskedFirstWhatItHas)
+{
+    const auto due = requester.Due(0s);
+    ASSERT_EQ(due.size(), 1U);
+    EXPECT_EQ(due[0].What.kind, Kind::SPANS);
+    EXPECT_EQ(due[0].What.to, 3600U);
+    EXPECT_TRUE(requester.Due(1s).empty()) << "one question at a time";
+}
+
+TEST_F(RequesterTest, ThenForThePosts)
+{
+    const Question question = AskForPosts();
+    EXPECT_EQ(question.kind, Kind::POSTS);
+    EXPECT_EQ(question.incarnation, 7U);
+    EXPECT_EQ((Range{question.from, question.to}), (Range{1000, 2000}));
+    const auto whole = requester.Answered("uav1", WithPost(question, TimeOf(1500) + 3), record, 1s);
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->second, (Range{1000, 2000}));
+    EXPECT_EQ(recorded, (std::vector<Post>{{TimeOf(1500) + 3, {1}}}));
+    EXPECT_TRUE(requester.Due(1s).empty()) << "nothing is missing";
+}
+
+TEST_F(RequesterTest, ASecondAnswerRecordsNothing)
+{
+    const Question question = AskForPosts();
+    requester.Answered("uav1", WithPost(question, TimeOf(1500)), record, 1s);
+    EXPECT_FALSE(requester.Answered("uav1", WithPost(question, TimeOf(1600)), record, 1s));
+    EXPECT_EQ(recorded.size(), 1U);
+    EXPECT_EQ(requester.Malformed(), 1U);
+}
+
+TEST_F(RequesterTest, PostsOutsideOfTheQuestionAreRefused)
+{
+    const Question question = AskForPosts();
+    Answer answer = WithPost(question, TimeOf(1500));
+    answer.to = 3000;
+    EXPECT_FALSE(requester.Answered("uav1", answer, record, 1s));
+    EXPECT_TRUE(recorded.empty());
+    EXPECT_EQ(requester.Malformed(), 1U);
+}
+
+TEST_F(RequesterTest, AnAnswerToAnEarlierQuestionIsNotTaken)
+{
+    Question question = AskForPosts();
+    --question.number;
+    EXPECT_FALSE(requester.Answered("uav1", WithPost(question, TimeOf(1500)), record, 1s));
+    EXPECT_TRUE(recorded.empty());
+}
+
+TEST_F(RequesterTest, AnotherNodeCannotAnswer)
+{
+    const Question question = AskForPosts();
+    EXPECT_FALSE(requester.Answered("uav2", WithPost(question, TimeOf(1500)), record, 1s));
+    EXPECT_TRUE(recorded.empty());
+}
+
+TEST_F(RequesterTest, WithoutRoomTheRangeIsAskedForAgain)
+{
+    const Question question = AskForPosts();
+    hasRoom = false;
+    EXPECT_FALSE(requester.Answered("uav1", WithPost(question, TimeOf(1500)), record, 1s));
+    EXPECT_TRUE(requester.Due(2s).empty());
+    hasRoom = true;
+    const auto due = requester.Due(1s + Requester::Pause);
+    ASSERT_EQ(due.size(), 1U);
+    requester.Answered("uav1", WithPost(due[0].What, TimeOf(1500)), record, 32s);
+    EXPECT_EQ(recorded.size(), 1U);
+}
+
+TEST_F(RequesterTest, ANodeThatIsNotUpIsNotAskedAndNotGivenUp)
+{
+    const Question question = AskForPosts();
+    requester.SetNode("uav1", 7, false, {"Pose"}, 1s);
+    EXPECT_TRUE(requester.Due(1000s).empty());
+    requester.SetNode("uav1", 7, true, {"Pose"}, 1000s);
+    EXPECT_TRUE(requester.Due(1001s).empty()) << "the answer is still on its way";
+    EXPECT_TRUE(requester.Answered("uav1", WithPost(question, TimeOf(1500)), record, 1002s));
+}
+
+TEST_F(RequesterTest, ARestartOfTheNodeIsAskedAgainAtOnce)
+{
+    AskForPosts();
+    requester.SetNode("uav1", 8, true, {"Pose"}, 1s);
+    EXPECT_EQ(requester.Due(1s).at(0).What.kind, Kind::SPANS);
+}
+
+TEST_F(RequesterTest, AfterAStartOverAnswersUnderWayAreDropped)
+{
+    const Question question = AskForPosts();
+    ledger.Clear();
+    requester.StartOver(1s);
+    EXPECT_FALSE(requester.Answered("uav1", WithPost(question, TimeOf(1500)), record, 1s));
+    EXPECT_EQ(requester.Due(1s).at(0).What.kind, Kind::SPANS);
+}
+
+TEST_F(RequesterTest, TheNodesTakeTurns)
+{
+    requester.SetNode("uav2", 1, true, {"Pose"}, 0s);
+    const auto due = requester.Due(0s);
+    ASSERT_EQ(due.size(), 1U);
+    EXPECT_EQ(due[0].Node, "uav1");
+    requester.Answered("uav1", AnswerTo(due[0].What), record, 0s);
+    EXPECT_EQ(requester.Due(0s).at(0).Node, "uav2");
+}
+
+TEST_F(RequesterTest, ANodeThatDoesNotAnswerHoldsUpNoOther)
+{
+    requester.SetNode("uav2", 1, true, {"Pose"}, 0s);
+    EXPECT_EQ(requester.Due(0s).at(0).Node, "uav1");
+    EXPECT_TRUE(requester.Due(1s).empty());
+    EXPECT_EQ(requester.Due(Requester::Slow).at(0).Node, "uav2");
+}
+
+TEST_F(RequesterTest, AfterAnAnswerTheChannelIsLeftToOthers)
+{
+    const Question question = AskForPosts();
+    Answer answer = WithPost(question, TimeOf(1500));
+    answer.from = 1500;  // there are more
+    answer.bytes = PostsCodec::EncodePosts({{TimeOf(1500), {1}}}, 1500);
+    requester.Answered("uav1", answer, record, 2s);
+    EXPECT_TRUE(requester.Due(2s + 2s * Requester::Rest - 1ms).empty());
+    EXPECT_EQ(requester.Due(2s + 2s * Requester::Rest).at(0).What.to, 1500U);
+}
+
+TEST_F(RequesterTest, ARefusalHasAReason)
+{
+    Answer answer = AnswerTo(requester.Due(0s).at(0).What);
+    answer.result = Result::NOT_ALLOWED;
+    requester.Answered("uav1", answer, record, 0s);
+    EXPECT_EQ(requester.Refusals().at({"uav1", "Pose"}),
+              "it does not let this node have them (`backfill_to` there)");
+    EXPECT_TRUE(requester.Due(1s).empty());
+}
+
+TEST_F(RequesterTest, TheNewestPostsAreLookedAtNowAndThen)
+{
+    requester.Answered("uav1", AnswerTo(AskForPosts()), record, 0s);
+    ledger.Take({"uav1", "Pose", 7}, 3000);
+    EXPECT_TRUE(requester.Due(1s).empty());
+    const auto due = requester.Due(2 * Requester::ShortestLook);
+    ASSERT_EQ(due.size(), 1U);
+    EXPECT_EQ((Range{due[0].What.from, due[0].What.to}), (Range{2000, 3001}));
+    EXPECT_EQ(PostsCodec::DecodeStamps(due[0].What.had, 2000), std::vector<Stamp>{3000});
+}
+
+}  // namespace
+}  // namespace Rabit::Backfill

@@ -1,0 +1,84 @@
+"""Nodes that record themselves, and a ground station that requests what it missed. For the tests beside this file."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
+import field  # noqa: E402,F401
+import harness  # noqa: E402,F401
+
+MESSAGES = ["Sample", "Finding"]
+SKIPPED = 77
+# Only keeps a broken program from hanging.
+LIMIT = 120
+
+
+class Fleet:
+    def __init__(self, ground, programs, transport, folder):
+        self.ground = ground
+        self.programs = pathlib.Path(programs)
+        self.transport = transport
+        self.folder = pathlib.Path(folder)
+        self.aircraft = [node for node in ground.nodes if node != "ground"]
+
+    def write(self, node, more=""):
+        common = (f"node: {node}\ninterfaces: [{self.ground.address(node)}]\ntransport: {self.transport}\n"
+                  f"state_dir: {self.folder}/state\n{more}")
+        record = f"record:\n  folder: {self.recordings(node)}\n  free: 0B\n  split_time: 20s\n"
+        if node == "ground":
+            common += ("subscribe:\n" + "".join(f"  - {{message: {message}, type: BackfillTest::Sample}}\n"
+                                                for message in MESSAGES))
+            record += f"  backfill: [{', '.join(MESSAGES)}]\n"
+        else:
+            common += ("publish:\n  - {message: Sample, type: BackfillTest::Sample, qos: telemetry}\n"
+                       "  - {message: Finding, type: BackfillTest::Sample}\n"
+                       "accept:\n  - {queue: Commands, types: [BackfillTest::Command]}\n"
+                       f"fetch: {{folder: {self.files(node)}, from: [\"*\"]}}\n")
+            self.files(node).mkdir(parents=True, exist_ok=True)
+        (self.folder / "state").mkdir(exist_ok=True)
+        (self.folder / f"{node}.yaml").write_text(common + record)
+
+    def recordings(self, node):
+        return self.folder / "recordings" / node
+
+    def files(self, node):
+        return self.folder / "files" / node
+
+    def start(self, node, *options):
+        more = ["--commands", *self.aircraft] if node == "ground" else options
+        return self.ground.start(node, [self.programs / "backfill_node", "--config", self.folder / f"{node}.yaml", *more])
+
+    def judge(self, node):
+        done = subprocess.run([self.programs / "backfill_judge", self.recordings(node), node, self.recordings("ground"),
+                               "ground", *MESSAGES], capture_output=True, text=True, check=True)
+        return [json.loads(line) for line in done.stdout.splitlines()]
+
+    def wait_until_whole(self, nodes, seconds):
+        """Until nothing is missing in the recording of the ground station. Returns how long it took, and the figures."""
+        begin = time.monotonic()
+        while True:
+            figures = [row for node in nodes for row in self.judge(node)]
+            missing = sum(row["missing"] for row in figures)
+            took = time.monotonic() - begin
+            if missing == 0:
+                return took, figures
+            if took > seconds:
+                raise AssertionError(f"after {seconds} s still missing: {figures}")
+            time.sleep(1)
+
+    def wait_until_whole_but_newest(self, nodes, seconds):
+        """The same while the nodes go on posting: of the posts that were there at the beginning."""
+        posts = {(node, row["message"]): row["posted"] for node in nodes for row in self.judge(node)}
+        begin = time.monotonic()
+        while True:
+            figures = [{**row, "node": node} for node in nodes for row in self.judge(node)]
+            took = time.monotonic() - begin
+            # What is posted meanwhile is on its way, live.
+            if all(row["oldest_missing"] >= posts[row["node"], row["message"]] for row in figures):
+                return took, figures
+            if took > seconds:
+                raise AssertionError(f"after {seconds} s still missing: {figures}")
+            time.sleep(0.5)

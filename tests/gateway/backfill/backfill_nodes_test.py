@@ -1,0 +1,123 @@
+#!/usr/bin/env python3
+"""An aircraft and a ground station. In the end the recording of the ground station has each post that is in the
+aircraft's, once, byte for byte, at its time.
+
+Usage: backfill_nodes_test.py CASE PROGRAMS TRANSPORT"""
+
+import subprocess
+import sys
+import time
+
+import backfill_fleet as bf
+
+POSTS = ["--rate", "20", "--posts", "300"]
+# The clock of the other node is known by half a round trip, on a busy machine.
+WORST_TIME_MS = 100
+
+
+def begin(fleet, more=""):
+    for node in fleet.ground.nodes:
+        fleet.write(node, more)
+    fleet.start("uav1", *POSTS)
+    ground = fleet.start("ground")
+    ground.wait_for(lambda text: text.startswith("age uav1"), bf.LIMIT)
+    return ground
+
+
+def end(fleet, least):
+    took, figures = fleet.wait_until_whole(["uav1"], bf.LIMIT)
+    print(f"whole after {took:.0f} s: {figures}")
+    for row in figures:
+        assert row["posted"] >= (least if row["message"] == "Sample" else least // 10), row
+        assert row["twice"] == 0 and row["other_bytes"] == 0, row
+        assert row["backfilled"] > 0, row
+        assert row["worst_time_ms"] < WORST_TIME_MS, row
+
+
+def killed(fleet):
+    """A cut between them, and a kill -9 of each."""
+    ground = begin(fleet)
+    time.sleep(3)
+    fleet.ground.cut("uav1")
+    time.sleep(8)
+    fleet.ground.heal()
+    time.sleep(2)
+    fleet.ground.kill("uav1")
+    fleet.start("uav1", *POSTS)
+    since = time.monotonic()
+    ground.wait_for(lambda text: text.startswith("age uav1"), bf.LIMIT, since)
+    time.sleep(2)
+    fleet.ground.kill("ground")
+    time.sleep(3)
+    fleet.start("ground")
+    time.sleep(20)  # the second life of the aircraft has posted all
+    end(fleet, 400)
+
+
+def full_disk(fleet):
+    """The disk of the ground station is full for a while."""
+    recordings = fleet.recordings("ground")
+    recordings.mkdir(parents=True)
+    subprocess.run(["mount", "-t", "tmpfs", "-o", "size=40m", "tmpfs", recordings], check=True)
+    try:
+        ground = begin(fleet)
+        time.sleep(2)
+        # 16 MB stay free whatever the configuration says.
+        (recordings / "filler").write_bytes(bytes(30_000_000))
+        ground.wait_for(lambda text: "nothing is recorded" in text, bf.LIMIT)
+        ground.wait_for(lambda text: "nothing is requested, since nothing can be recorded" in text, bf.LIMIT)
+        ground.wait_for(lambda text: text.startswith("age uav1"), bf.LIMIT, time.monotonic())  # it goes on
+        (recordings / "filler").unlink()
+        time.sleep(16)
+        end(fleet, 290)
+        assert ground.running()
+    finally:
+        fleet.ground.kill("ground")
+        subprocess.run(["umount", recordings], check=True)
+
+
+def secured(fleet):
+    """With keys only the nodes that `backfill_to` names may request."""
+    def rabit(*words):
+        subprocess.run([fleet.programs / "rabit", "keys", *words], cwd=fleet.folder, check=True, capture_output=True)
+
+    rabit("init")
+    for node in fleet.ground.nodes:
+        fleet.write(node)
+        rabit("add", node, "--config", f"{node}.yaml")
+    keys = "security: {{keys: {}/keys/{}}}\n"
+    for node in fleet.ground.nodes:
+        fleet.write(node, keys.format(fleet.folder, node))
+    fleet.start("uav1", *POSTS)
+    ground = fleet.start("ground")
+    ground.wait_for(lambda text: "it does not let this node have them" in text, bf.LIMIT)
+    fleet.ground.kill("uav1")
+    with open(fleet.folder / "uav1.yaml", "a", encoding="ascii") as file:
+        file.write("  backfill_to: [ground]\n")
+    since = time.monotonic()
+    fleet.start("uav1", *POSTS)
+    ground.wait_for(lambda text: text.startswith("age uav1"), bf.LIMIT, since)
+    time.sleep(2)
+    fleet.ground.cut("uav1")
+    time.sleep(5)
+    fleet.ground.heal()
+    time.sleep(10)
+    end(fleet, 290)
+
+
+CASES = {"killed": killed, "full_disk": full_disk, "secured": secured}
+
+
+def main():
+    case, programs, transport = sys.argv[1:]
+    try:
+        with bf.field.Field(["uav1", "ground"]) as ground:
+            CASES[case](bf.Fleet(ground, programs, transport, ground.folder))
+    except bf.field.Unsupported as reason:
+        print(f"skipped: {reason}")
+        return bf.SKIPPED
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
