@@ -65,7 +65,7 @@ public:
             _posts = std::make_unique<FolderPosts>(config.Record->Folder, config.Node);
             _answers = std::make_unique<PostAnswers>(
                 *_posts, [this](const std::string &node, const std::string &) { return MayHave(node); },
-                [this](const std::string &message) { return Publishes(message); });
+                [this](const std::string &message) { return Offers(message); });
         }
         if (config.Record && !config.Record->Backfill.empty() && _target)
         {
@@ -157,9 +157,11 @@ private:
         const auto &allowed = _config.Record->BackfillTo;
         return allowed ? MatchesAny(*allowed, node) : !_config.Security;
     }
-    bool Publishes(const std::string &message) const
+    bool Offers(const std::string &message) const
     {
-        return std::any_of(_config.Publish.begin(), _config.Publish.end(),
+        const RecordSettings &record = *_config.Record;
+        return MatchesAny(record.Messages, message) && !MatchesAny(record.Except, message) &&
+               std::any_of(_config.Publish.begin(), _config.Publish.end(),
                            [&message](const PublishRule &rule) { return rule.Message == message; });
     }
     // Nothing is requested that could not be recorded. When the disk has failed nobody knows which posts are

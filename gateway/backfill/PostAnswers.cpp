@@ -20,14 +20,13 @@ Answer PostAnswers::Of(const std::string &node, const Question &question)
     {
         answer.result = Result::NOT_ALLOWED;
     }
-    else if (!_publishes(question.name))
+    else if (!_offers(question.name))
     {
         answer.result = Result::UNKNOWN;
     }
     else if (question.kind == Kind::SPANS)
     {
         const auto spans = _store.Spans(question.name, question.to);
-        answer.result = spans.empty() ? Result::UNKNOWN : Result::OK;
         answer.bytes = PostsCodec::EncodeSpans(spans);
     }
     else

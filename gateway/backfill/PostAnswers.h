@@ -20,12 +20,12 @@ public:
 
     // True if that node may have that message.
     using MayHave = std::function<bool(const std::string &node, const std::string &message)>;
-    // True if this node publishes that message.
-    using Publishes = std::function<bool(const std::string &message)>;
+    // True if this node publishes and records that message.
+    using Offers = std::function<bool(const std::string &message)>;
 
     // The store must outlive the object.
-    PostAnswers(PostStore &store, MayHave mayHave, Publishes publishes)
-        : _store(store), _mayHave(std::move(mayHave)), _publishes(std::move(publishes))
+    PostAnswers(PostStore &store, MayHave mayHave, Offers offers)
+        : _store(store), _mayHave(std::move(mayHave)), _offers(std::move(offers))
     {
     }
 
@@ -37,7 +37,7 @@ private:
 
     PostStore &_store;
     const MayHave _mayHave;
-    const Publishes _publishes;
+    const Offers _offers;
 };
 
 }  // namespace Rabit::Backfill

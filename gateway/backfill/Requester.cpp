@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "backfill/PostAnswers.h"
 #include "backfill/PostsCodec.h"
 
 namespace Rabit::Backfill
@@ -201,7 +202,8 @@ std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &n
     }
     if (answer.kind == Kind::SPANS)
     {
-        wanted->second.NextSpans = now + LongestLook;
+        // A node that has just begun has nothing yet.
+        wanted->second.NextSpans = now + (answer.bytes.empty() ? ShortestLook : LongestLook);
         TakeSpans(name, answer);
         return std::nullopt;
     }
@@ -241,10 +243,9 @@ std::optional<std::pair<Series, Range>> Requester::TakePosts(const std::string &
         wanted.Look = posts->empty() ? std::min(2 * wanted.Look, LongestLook) : ShortestLook;
         wanted.NextLook = now + wanted.Look;
     }
-    if (!posts->empty())
-    {
-        _restUntil = now + Rest * std::min(now - asked.At, Slow);
-    }
+    const double share = std::min(
+        1.0, static_cast<double>(answer.bytes.size()) / static_cast<double>(PostAnswers::LargestAnswer));
+    _restUntil = now + std::chrono::duration_cast<Duration>(share * Rest * std::min(now - asked.At, Slow));
     const Series series{node, answer.name, answer.incarnation};
     for (const Post &post : *posts)
     {

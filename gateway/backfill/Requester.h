@@ -30,8 +30,9 @@ public:
     static constexpr std::size_t MostAsked = 1;
     // A question that is open for longer holds up no other node.
     static constexpr Duration Slow = std::chrono::seconds(10);
-    // After an answer with posts, nothing is asked for this many times as long as the answer took. So the
-    // channel is free for live values and commands most of the time, whatever its capacity.
+    // After a full answer, nothing is asked for this many times as long as the answer took; after a smaller
+    // one for less. So the channel is free for live values and commands most of the time, whatever its
+    // capacity.
     static constexpr int Rest = 4;
     // From one look at the newest posts to the next: doubles up to the longest while nothing is missing.
     static constexpr Duration ShortestLook = std::chrono::seconds(10);

@@ -21,8 +21,8 @@ import radio_field  # noqa: E402  (backfill_fleet finds tests/integration)
 
 KBIT = 250
 AIRCRAFT = [f"uav{number}" for number in range(1, 5)]
-RATE_HZ = 10
-PADDING = 200
+RATE_HZ = 5
+PADDING = 100
 CUT_S = 60
 FILE = 10_000_000
 CUTS = 10
@@ -147,7 +147,7 @@ def main():
     arguments = parser.parse_args()
     more = f"radio: {{budget: {arguments.budget}}}\n" if arguments.budget else ""
     for case in arguments.cases:
-        {"fill": fill, "fetch": fetch}[case](arguments.programs.resolve(), arguments.transport, more)
+        {"fill": fill, "fetch": fetch}[case](arguments.programs.absolute(), arguments.transport, more)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "backfill/PostAnswers.h"
 #include "backfill/PostsCodec.h"
 
 namespace Rabit::Backfill
@@ -175,7 +176,8 @@ TEST_F(RequesterTest, AfterAnAnswerTheChannelIsLeftToOthers)
     const Question question = AskForPosts();
     Answer answer = WithPost(question, TimeOf(1500));
     answer.from = 1500;  // there are more
-    answer.bytes = PostsCodec::EncodePosts({{TimeOf(1500), {1}}}, 1500);
+    answer.bytes = PostsCodec::EncodePosts(
+        {{TimeOf(1500), std::vector<std::uint8_t>(PostAnswers::LargestAnswer)}}, 1500);
     requester.Answered("uav1", answer, record, 2s);
     EXPECT_TRUE(requester.Due(2s + 2s * Requester::Rest - 1ms).empty());
     EXPECT_EQ(requester.Due(2s + 2s * Requester::Rest).at(0).What.to, 1500U);

@@ -26,6 +26,7 @@ struct Recorded
     std::uint64_t PublishTime = 0;
     int Times = 0;
     int Missed = 0;  // times that it came later
+    std::string Where;
 };
 using Posts = std::map<std::pair<std::uint64_t, Stamp>, Recorded>;
 
@@ -61,8 +62,7 @@ Posts PostsOf(RecordingIndex &index, const std::string &topic)
                                : StampOf(static_cast<std::int64_t>(message.PublishTime) - sourceToLog));
                     Recorded &post = posts[key];
                     // The last message of a state is repeated at the beginning of a file.
-                    const bool isRepeated = isFirst.try_emplace(channel.Id, true).second && post.Times > 0 &&
-                                            message.LogTime > message.PublishTime + 100'000'000;
+                    const bool isRepeated = isFirst.try_emplace(channel.Id, true).second && post.Times > 0;
                     post.Times += isRepeated ? 0 : 1;
                     post.Missed += TextAt(channel.Metadata, "rabit.kind") == "backfilled" ? 1 : 0;
                     post.Bytes.assign(message.Data.begin(), message.Data.end());
@@ -108,7 +108,11 @@ int main(int argc, char **argv)
                 oldestMissing = std::min(oldestMissing, number - 1);
                 continue;
             }
-            twice += found->second.Times > 1 ? 1 : 0;
+            if (found->second.Times > 1)
+            {
+                ++twice;
+                std::fprintf(stderr, "twice: %s\n", found->second.Where.c_str());
+            }
             other += found->second.Bytes == post.Bytes ? 0 : 1;
             missed += found->second.Missed;
             worst = std::max(worst, std::abs(static_cast<std::int64_t>(found->second.PublishTime) -
