@@ -262,6 +262,7 @@ private:
             { OnText(node, definition, std::move(answer)); },
             .ReportOf = [this](NodeReports::Name name) { return ReportOf(name); }};
         const std::vector<GatewayConfig> configs = PathConfigsOf(_config);
+        _subscriptions.SetSessions(configs.size());
         std::vector<const PeerTable *> tables;
         for (std::size_t path = 0; path < configs.size(); ++path)
         {

@@ -30,18 +30,33 @@ void Subscriptions::Open(TransportSession &session)
     _sessions.push_back(&session);
     for (std::size_t i = 0; i < _rules.size(); ++i)
     {
-        TopicSubscriber &subscriber =
-            i < _subscriptions.size() ? *_subscriptions[i].Subscriber : Make(_rules[i]);
-        subscriber.Open(session);
+        if (i == _subscriptions.size())
+        {
+            _subscriptions.push_back({&_rules[i], Make(_rules[i])});
+        }
+        _subscriptions[i].Subscriber->Open(session);
     }
 }
 
-TopicSubscriber &Subscriptions::Make(const SubscribeRule &rule)
+std::unique_ptr<TopicSubscriber> Subscriptions::Make(const SubscribeRule &rule) const
 {
-    _subscriptions.push_back(
-        {&rule, std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins,
-                                                  _workspace, _handlers, _tap)});
-    return *_subscriptions.back().Subscriber;
+    auto subscriber = std::make_unique<TopicSubscriber>(rule, *MessageTypeRegistry::Find(rule.Type), _origins,
+                                                        _workspace, _handlers, _tap);
+    if (_expected > 1)
+    {
+        subscriber->ExpectSeveral();
+    }
+    return subscriber;
+}
+
+std::unique_ptr<TopicSubscriber> Subscriptions::MakeOpen(const SubscribeRule &rule) const
+{
+    auto subscriber = Make(rule);
+    for (TransportSession *session : _sessions)
+    {
+        subscriber->Open(*session);
+    }
+    return subscriber;
 }
 
 bool Subscriptions::Add(const SubscribeRule &rule)
@@ -56,15 +71,10 @@ bool Subscriptions::Add(const SubscribeRule &rule)
     _rules.push_back(rule);
     try
     {
-        TopicSubscriber &subscriber = Make(_rules.back());
-        for (TransportSession *session : _sessions)
-        {
-            subscriber.Open(*session);
-        }
+        _subscriptions.push_back({&_rules.back(), MakeOpen(_rules.back())});
     }
     catch (...)
     {
-        _subscriptions.resize(_rules.size() - 1);
         _rules.pop_back();
         throw;
     }
@@ -88,13 +98,7 @@ bool Subscriptions::Widen(std::size_t place, const SubscribeRule &rule)
         return false;
     }
     // A reader has its nodes from the beginning, so another one takes its place. States come anew.
-    auto subscriber = std::make_unique<TopicSubscriber>(wider, *MessageTypeRegistry::Find(wider.Type),
-                                                        _origins, _workspace, _handlers, _tap);
-    for (TransportSession *session : _sessions)
-    {
-        subscriber->Open(*session);
-    }
-    _subscriptions[place].Subscriber = std::move(subscriber);
+    _subscriptions[place].Subscriber = MakeOpen(wider);
     _rules[place] = std::move(wider);
     _known.clear();
     return true;

@@ -35,6 +35,8 @@ public:
                   RabitWorkspace &workspace, RabitHandlerThread *handlers = nullptr,
                   std::shared_ptr<GatewayTap> tap = nullptr);
 
+    // The number of sessions for which Open will be called. Before the first.
+    void SetSessions(std::size_t sessions) { _expected = sessions; }
     // Reads from that session as well, and keeps it until Close. Throws TransportError.
     void Open(TransportSession &session);
     void Close();
@@ -74,7 +76,8 @@ private:
         bool operator==(const Known &) const = default;
     };
 
-    TopicSubscriber &Make(const SubscribeRule &rule);
+    std::unique_ptr<TopicSubscriber> Make(const SubscribeRule &rule) const;
+    std::unique_ptr<TopicSubscriber> MakeOpen(const SubscribeRule &rule) const;
     // Has the reader of that rule read from the nodes of the other rule, too. False if that changes nothing.
     bool Widen(std::size_t place, const SubscribeRule &rule);
     static std::optional<QosProfile> OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer);
@@ -85,6 +88,7 @@ private:
     RabitHandlerThread *const _handlers;
     const std::shared_ptr<GatewayTap> _tap;
     std::vector<Subscription> _subscriptions;  // of each rule, in their order, while open
+    std::size_t _expected = 1;
     std::vector<TransportSession *> _sessions;
     std::map<std::string, Known> _known;
 };

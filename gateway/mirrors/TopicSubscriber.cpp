@@ -42,7 +42,6 @@ TopicSubscriber::~TopicSubscriber()
 
 void TopicSubscriber::Open(TransportSession &session)
 {
-    _comesTwice = !_readers.empty();
     _readers.push_back(session.CreateReader(
         GatewayTopics::Describe(_rule.Message, _type), GatewayTopics::QosOf(QosProfile::Telemetry),
         _rule.From, [this](SampleBytes bytes, const SampleInfo &info) { OnSample(bytes, info); }));

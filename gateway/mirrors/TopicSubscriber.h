@@ -8,7 +8,6 @@
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/Transport.h>
 
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -51,6 +50,8 @@ public:
                     std::shared_ptr<GatewayTap> tap = nullptr);
     ~TopicSubscriber();
 
+    // Open will be called for several sessions. Before the first.
+    void ExpectSeveral() { _comesTwice = true; }
     // Reads from that session as well; throws TransportError.
     void Open(TransportSession &session);
 
@@ -132,7 +133,7 @@ private:
     std::uint64_t _crowdedOut = 0;
 
     std::vector<std::unique_ptr<TransportReader>> _readers;
-    std::atomic<bool> _comesTwice{false};  // there are several sessions
+    bool _comesTwice = false;  // there are several sessions
 };
 
 }  // namespace Rabit
