@@ -144,7 +144,7 @@ public:
 //     fleet.Network.SetFaults("*", "*", {.Loss = 0.2});
 //     fleet.RunFor(10s);
 //     EXPECT_EQ(ground.StateOf("uav1"), "UP");
-//     EXPECT_LT(ground.Newest<Uav::Pose>("uav1/Pose").GetAgeSeconds(), 1);
+//     EXPECT_LT(ground.Newest<Uav::Pose>("uav1/Pose").GetAgeSeconds(*ground.Clock), 1);
 //     fleet.Kill("uav1");
 //
 // Not thread-safe. Faults, counters and the air are SimulatedNetwork's.
