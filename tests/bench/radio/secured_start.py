@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """How long nodes that start at once need to find each other on a radio, without keys and with them: until all saw all others UP.
 
-Usage: secured_start.py [--nodes N] [--kbit RATE]... [--transports NAME,...] [--levels NAME,...] [--limit SECONDS] PROGRAMS
+Usage: secured_start.py [--nodes N] [--kbit RATE]... [--loss PERCENT] [--tries N] [--transports NAME,...] [--levels NAME,...]
+                        [--limit SECONDS] PROGRAMS
 PROGRAMS is the folder of the programs (build/release/bin). Each node publishes a tick a second, which all others follow. Exit
 code 77: this machine does not allow it."""
 
@@ -13,7 +14,7 @@ import tempfile
 import time
 
 import measures
-from rows import RABIT
+from rows import MIXED, RABIT
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
 import field  # noqa: E402
@@ -32,11 +33,11 @@ def run(*argv):
     subprocess.run([str(word) for word in argv], check=True, capture_output=True)
 
 
-def make_keys(programs, folder, nodes, transport):
+def make_keys(programs, folder, fleet):
     run(programs / "rabit", "keys", "init", folder / "keys")
-    for node in nodes:
+    for node in fleet.ground.nodes:
         config = folder / f"{node}.yaml"
-        config.write_text(CONFIG.format(node=node, domain=measures.DOMAIN, transport=transport))
+        config.write_text(CONFIG.format(node=node, domain=measures.DOMAIN, transport=fleet.transport_of(node)))
         run(programs / "rabit", "keys", "add", node, "--keys", folder / "keys", "--config", config)
 
 
@@ -44,11 +45,11 @@ def start(options, transport, level, kbit):
     programs = pathlib.Path(options.programs)
     nodes = [f"uav{number}" for number in range(1, options.nodes + 1)]
     with tempfile.TemporaryDirectory() as folder, \
-            radio_field.RadioField(programs / "radio", nodes, {"kbit": kbit}) as ground:
+            radio_field.RadioField(programs / "radio", nodes, {"kbit": kbit, "loss": options.loss}) as ground:
         keys = pathlib.Path(folder)
-        if level != "none":
-            make_keys(programs, keys, nodes, transport)
         fleet = measures.Fleet(ground, programs, RABIT, transport)
+        if level != "none":
+            make_keys(programs, keys, fleet)
         ground.reset()
         began = time.monotonic()
         for node in nodes:
@@ -74,7 +75,7 @@ def start(options, transport, level, kbit):
 
 
 def measures_name(transport):
-    return {"fastdds": "Fast DDS", "cyclonedds": "Cyclone DDS"}[transport]
+    return {"fastdds": "Fast DDS", "cyclonedds": "Cyclone DDS", MIXED: "both in turns"}[transport]
 
 
 def main():
@@ -83,6 +84,8 @@ def main():
     parser.add_argument("--kbit", type=float, action="append")
     parser.add_argument("--transports", default="fastdds,cyclonedds")
     parser.add_argument("--levels", default="none,sign,encrypt")
+    parser.add_argument("--loss", type=float, default=0, help="percent, at each receiver")
+    parser.add_argument("--tries", type=int, default=1)
     parser.add_argument("--limit", type=float, default=120)
     parser.add_argument("--settle", type=float, default=10, help="seconds, before and while the idle fleet is measured")
     parser.add_argument("programs")
@@ -92,7 +95,7 @@ def main():
     try:
         for kbit in options.kbit or [1000]:
             for transport in options.transports.split(","):
-                for level in options.levels.split(","):
+                for level in options.levels.split(",") * options.tries:
                     start(options, transport, level, kbit)
     except field.Unsupported as reason:
         print(f"skipped: {reason}")
