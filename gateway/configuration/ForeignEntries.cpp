@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "configuration/ConfigSections.h"
+
 namespace Rabit
 {
 namespace
@@ -14,14 +16,6 @@ namespace
 const std::vector<std::string> OfSubscribe = {"as",  "each",     "stale_after",
                                               "age", "capacity", "capacity_bytes"};
 const std::vector<std::string> OfPublish = {"topic", "depth", "max_rate"};
-
-std::vector<std::string> AllKeys()
-{
-    std::vector<std::string> keys = {"subscribe", "publish", "type", "names", "reliability", "durability"};
-    keys.insert(keys.end(), OfSubscribe.begin(), OfSubscribe.end());
-    keys.insert(keys.end(), OfPublish.begin(), OfPublish.end());
-    return keys;
-}
 
 void RefuseKeys(const YamlMap &entry, const std::vector<std::string> &keys, const char *direction)
 {
@@ -81,7 +75,7 @@ void ReadPublished(const YamlMap &entry, ForeignRule &rule)
 
 void ReadForeign(const YamlMap &map, GatewayConfig &config)
 {
-    for (const YamlMap &entry : map.Maps("foreign", "a `foreign` entry", AllKeys()))
+    for (const YamlMap &entry : map.Maps("foreign", ConfigSectionAt("foreign")))
     {
         ForeignRule rule;
         rule.Line = entry.Line();
@@ -89,7 +83,6 @@ void ReadForeign(const YamlMap &map, GatewayConfig &config)
         {
             entry.Fail(entry.Line(), "a `foreign` entry has either `subscribe` or `publish`");
         }
-        entry.Require("type");
         entry.Read("type", rule.Type);
         entry.Read("names", {"plain", "ros2"}, rule.Names);
         if (entry.Has("subscribe"))

@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "air/TrafficClassWords.h"
+#include "configuration/ConfigSections.h"
 #include "configuration/ForeignEntries.h"
 #include "configuration/PanelEntries.h"
 #include "configuration/ParameterSection.h"
@@ -67,26 +68,31 @@ void ReadNetwork(const YamlMap &map, GatewayConfig &config)
     map.Read("state_dir", config.StateDir);
 }
 
-// A section; empty if it is missing. The lines of its keys are noted as `place.key`.
-std::optional<YamlMap> Section(const YamlMap &map, const std::string &key,
-                               const std::vector<std::string> &keys, const std::string &place,
-                               GatewayConfig &config)
+// The section at that path; empty if it is missing. The lines of its keys are noted as `path.key`, after the
+// place of the mapping that it is in.
+std::optional<YamlMap> Section(const YamlMap &map, const std::string &path, GatewayConfig &config,
+                               const std::string &place = "")
 {
-    auto section = map.Map(key, "the section `" + key + "`", keys);
+    auto section = map.Map(path.substr(path.rfind('.') + 1), ConfigSectionAt(path));
     for (const auto &[name, line] : section ? section->Lines() : std::map<std::string, int>())
     {
-        config.Lines[place + "." + name] = line;
+        config.Lines[place + path + "." + name] = line;
     }
     return section;
+}
+
+// The entries of the list at that top-level key.
+std::vector<YamlMap> Entries(const YamlMap &map, const std::string &key)
+{
+    return map.Maps(key, ConfigSectionAt(key));
 }
 
 // The sections of a path stand at `place` of the file, those of a gateway at its top.
 void ReadSecurity(const YamlMap &map, const std::string &place, GatewayConfig &config,
                   std::optional<SecuritySettings> &settings)
 {
-    if (const auto security = Section(map, "security", {"keys", "level"}, place + "security", config))
+    if (const auto security = Section(map, "security", config, place))
     {
-        security->Require("keys");
         settings.emplace();
         security->Read("keys", settings->Keys);
         security->Read("level", {"sign", "encrypt"}, settings->Level);
@@ -95,7 +101,7 @@ void ReadSecurity(const YamlMap &map, const std::string &place, GatewayConfig &c
 
 void ReadRadio(const YamlMap &map, const std::string &place, GatewayConfig &config, RadioSettings &settings)
 {
-    if (const auto radio = Section(map, "radio", {"budget", "slowest_beat"}, place + "radio", config))
+    if (const auto radio = Section(map, "radio", config, place))
     {
         radio->ReadByteRate("budget", settings.Budget);
         radio->Read("slowest_beat", settings.SlowestBeat);
@@ -104,11 +110,8 @@ void ReadRadio(const YamlMap &map, const std::string &place, GatewayConfig &conf
 
 void ReadPaths(const YamlMap &map, GatewayConfig &config)
 {
-    for (const YamlMap &entry :
-         map.Maps("paths", "a `paths` entry",
-                  {"name", "transport", "interfaces", "peers", "multicast", "radio", "security"}))
+    for (const YamlMap &entry : Entries(map, "paths"))
     {
-        entry.Require("name");
         PathRule path;
         path.Line = entry.Line();
         entry.Read("name", path.Name);
@@ -129,16 +132,11 @@ void ReadPaths(const YamlMap &map, GatewayConfig &config)
 
 void ReadRecord(const YamlMap &map, GatewayConfig &config)
 {
-    const auto record =
-        Section(map, "record",
-                {"folder", "messages", "except", "queues", "steps", "split_size", "split_time", "keep",
-                 "free", "memory", "black_box", "backfill", "backfill_last", "backfill_to"},
-                "record", config);
+    const auto record = Section(map, "record", config);
     if (!record)
     {
         return;
     }
-    record->Require("folder");
     RecordSettings settings;
     settings.Line = map.Line("record");
     record->Read("folder", settings.Folder);
@@ -151,9 +149,7 @@ void ReadRecord(const YamlMap &map, GatewayConfig &config)
     record->ReadByteSize("keep", settings.Keep, RecordRanges::Keep);
     record->ReadByteSize("free", settings.Free, RecordRanges::Free);
     record->ReadByteSize("memory", settings.Memory, RecordRanges::Memory);
-    if (const auto box =
-            Section(*record, "black_box", {"before", "after", "messages", "queues", "outcomes", "problems"},
-                    "record.black_box", config))
+    if (const auto box = Section(*record, "record.black_box", config))
     {
         BlackBoxSettings &black = settings.BlackBox.emplace();
         box->Read("before", black.Before);
@@ -174,10 +170,8 @@ void ReadRecord(const YamlMap &map, GatewayConfig &config)
 
 void ReadFetch(const YamlMap &map, GatewayConfig &config)
 {
-    if (const auto fetch = Section(map, "fetch", {"folder", "from"}, "fetch", config))
+    if (const auto fetch = Section(map, "fetch", config))
     {
-        fetch->Require("folder");
-        fetch->Require("from");
         FetchSettings &settings = config.Fetch.emplace();
         settings.Line = map.Line("fetch");
         fetch->Read("folder", settings.Folder);
@@ -193,11 +187,8 @@ std::optional<TrafficClass> ReadClass(const YamlMap &entry)
 
 void ReadPublish(const YamlMap &map, GatewayConfig &config)
 {
-    for (const YamlMap &entry :
-         map.Maps("publish", "a `publish` entry", {"message", "type", "qos", "max_rate", "class", "weight"}))
+    for (const YamlMap &entry : Entries(map, "publish"))
     {
-        entry.Require("message");
-        entry.Require("type");
         PublishRule rule;
         rule.Line = entry.Line();
         entry.Read("message", rule.Message);
@@ -212,11 +203,8 @@ void ReadPublish(const YamlMap &map, GatewayConfig &config)
 
 void ReadSubscribe(const YamlMap &map, GatewayConfig &config)
 {
-    for (const YamlMap &entry :
-         map.Maps("subscribe", "a `subscribe` entry", {"message", "type", "from", "qos"}))
+    for (const YamlMap &entry : Entries(map, "subscribe"))
     {
-        entry.Require("message");
-        entry.Require("type");
         SubscribeRule rule;
         rule.Line = entry.Line();
         entry.Read("message", rule.Message);
@@ -229,10 +217,8 @@ void ReadSubscribe(const YamlMap &map, GatewayConfig &config)
 
 void ReadAccept(const YamlMap &map, GatewayConfig &config)
 {
-    for (const YamlMap &entry : map.Maps("accept", "an `accept` entry", {"queue", "types", "from"}))
+    for (const YamlMap &entry : Entries(map, "accept"))
     {
-        entry.Require("queue");
-        entry.Require("types");
         AcceptRule rule;
         rule.Line = entry.Line();
         entry.Read("queue", rule.Queue);
@@ -244,9 +230,7 @@ void ReadAccept(const YamlMap &map, GatewayConfig &config)
 
 void ReadSend(const YamlMap &map, GatewayConfig &config)
 {
-    for (const YamlMap &entry : map.Maps("send", "a `send` entry",
-                                         {"to", "queue", "capacity", "capacity_bytes", "expire", "window",
-                                          "redeliver_in_doubt", "class", "weight"}))
+    for (const YamlMap &entry : Entries(map, "send"))
     {
         SendRule rule;
         rule.Line = entry.Line();
@@ -265,14 +249,7 @@ void ReadSend(const YamlMap &map, GatewayConfig &config)
 
 YamlMap OpenText(const std::string &file, const std::string &text)
 {
-    return {file,
-            Parse(file, text),
-            "the configuration",
-            {"node",      "name",         "domain",        "transport",   "interfaces",     "peers",
-             "multicast", "max_datagram", "shared_memory", "lease",       "backend_config", "state_dir",
-             "security",  "radio",        "record",        "publish",     "subscribe",      "accept",
-             "send",      "foreign",      "foxglove",      "problems_of", "reports",        "parameters",
-             "paths",     "fetch"}};
+    return {file, Parse(file, text), ConfigSectionAt("")};
 }
 
 YamlMap OpenFile(const std::string &file)

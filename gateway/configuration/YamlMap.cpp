@@ -20,9 +20,8 @@ int LineOf(const YAML::Node &node)
 
 }  // namespace
 
-YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what,
-                 const std::vector<std::string> &allowedKeys)
-    : YamlMap(std::move(file), node, std::move(what), &allowedKeys)
+YamlMap::YamlMap(std::string file, const YAML::Node &node, const ConfigSection &section)
+    : YamlMap(std::move(file), node, section.Title, &section)
 {
 }
 
@@ -31,14 +30,14 @@ YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what)
 {
 }
 
-YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what,
-                 const std::vector<std::string> *allowedKeys)
+YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what, const ConfigSection *section)
     : _file(std::move(file)), _what(std::move(what)), _line(LineOf(node))
 {
     if (!node.IsMap())
     {
         Fail(_line, _what + " must be a mapping of keys to values");
     }
+    const std::vector<std::string> allowedKeys = section ? section->Names() : std::vector<std::string>();
     for (const auto &entry : node)
     {
         if (!entry.first.IsScalar())
@@ -46,11 +45,10 @@ YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what,
             Fail(LineOf(entry.first), "a key in " + _what + " must be a word");
         }
         const std::string &key = entry.first.Scalar();
-        if (allowedKeys != nullptr &&
-            std::find(allowedKeys->begin(), allowedKeys->end(), key) == allowedKeys->end())
+        if (section && std::find(allowedKeys.begin(), allowedKeys.end(), key) == allowedKeys.end())
         {
             Fail(LineOf(entry.first),
-                 "unknown key `" + key + "` in " + _what + NearestWordHint(key, *allowedKeys));
+                 "unknown key `" + key + "` in " + _what + NearestWordHint(key, allowedKeys));
         }
         if (Has(key))
         {
@@ -61,6 +59,13 @@ YamlMap::YamlMap(std::string file, const YAML::Node &node, std::string what,
             Fail(LineOf(entry.first), "key `" + key + "` in " + _what + " has no value");
         }
         _entries.emplace_back(key, entry.second);
+    }
+    for (const ConfigKey &key : section ? section->Keys : std::vector<ConfigKey>())
+    {
+        if (key.IsRequired)
+        {
+            Require(key.Name);
+        }
     }
 }
 
@@ -282,11 +287,10 @@ int YamlMap::ReadChoice(const std::string &key, const std::vector<std::string> &
     return static_cast<int>(found - choices.begin());
 }
 
-std::optional<YamlMap> YamlMap::Map(const std::string &key, const std::string &what,
-                                    const std::vector<std::string> &allowedKeys) const
+std::optional<YamlMap> YamlMap::Map(const std::string &key, const ConfigSection &section) const
 {
     const YAML::Node *node = Find(key);
-    return node == nullptr ? std::nullopt : std::optional(YamlMap(_file, *node, what, allowedKeys));
+    return node == nullptr ? std::nullopt : std::optional(YamlMap(_file, *node, section));
 }
 
 std::optional<YamlMap> YamlMap::MapOfAnyKeys(const std::string &key, const std::string &what) const
@@ -295,8 +299,7 @@ std::optional<YamlMap> YamlMap::MapOfAnyKeys(const std::string &key, const std::
     return node == nullptr ? std::nullopt : std::optional(YamlMap(_file, *node, what));
 }
 
-std::vector<YamlMap> YamlMap::Maps(const std::string &key, const std::string &what,
-                                   const std::vector<std::string> &allowedKeys) const
+std::vector<YamlMap> YamlMap::Maps(const std::string &key, const ConfigSection &section) const
 {
     std::vector<YamlMap> maps;
     if (const YAML::Node *node = Find(key))
@@ -307,7 +310,7 @@ std::vector<YamlMap> YamlMap::Maps(const std::string &key, const std::string &wh
         }
         for (const auto &item : *node)
         {
-            maps.emplace_back(_file, item, what, allowedKeys);
+            maps.emplace_back(_file, item, section);
         }
     }
     return maps;

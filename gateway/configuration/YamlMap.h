@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "configuration/ConfigSections.h"
 #include "names/ByteSize.h"
 
 namespace Rabit
@@ -22,12 +23,11 @@ namespace Rabit
 class YamlMap
 {
 public:
-    // `what` names the mapping in messages, for instance "a `publish` entry". Refuses anything but a mapping,
-    // keys that are not among the allowed ones, and a key used twice.
-    YamlMap(std::string file, const YAML::Node &node, std::string what,
-            const std::vector<std::string> &allowedKeys);
+    // Refuses anything but a mapping, keys that are not in the section, a key used twice, and a mapping
+    // without a required key.
+    YamlMap(std::string file, const YAML::Node &node, const ConfigSection &section);
 
-    // The same with any keys.
+    // The same with any keys. `what` names the mapping in messages.
     YamlMap(std::string file, const YAML::Node &node, std::string what);
 
     bool Has(const std::string &key) const;
@@ -63,19 +63,16 @@ public:
         }
     }
     // A mapping; empty if the key is missing.
-    std::optional<YamlMap> Map(const std::string &key, const std::string &what,
-                               const std::vector<std::string> &allowedKeys) const;
+    std::optional<YamlMap> Map(const std::string &key, const ConfigSection &section) const;
     std::optional<YamlMap> MapOfAnyKeys(const std::string &key, const std::string &what) const;
     // A list of mappings; empty if the key is missing.
-    std::vector<YamlMap> Maps(const std::string &key, const std::string &what,
-                              const std::vector<std::string> &allowedKeys) const;
+    std::vector<YamlMap> Maps(const std::string &key, const ConfigSection &section) const;
 
     [[noreturn]] void Fail(int line, const std::string &message) const;
 
 private:
     // A null pointer allows any key.
-    YamlMap(std::string file, const YAML::Node &node, std::string what,
-            const std::vector<std::string> *allowedKeys);
+    YamlMap(std::string file, const YAML::Node &node, std::string what, const ConfigSection *section);
     const YAML::Node *Find(const std::string &key) const;
     template <typename Number>
     void ReadWhole(const std::string &key, Number &value, Number least, Number most) const;

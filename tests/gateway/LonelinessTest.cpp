@@ -48,7 +48,7 @@ TEST_F(LonelinessTest, SaysWhereItListensAndWhatGoesOutWhenNobodyWasHeardForTenS
     EXPECT_EQ(ReasonAt(109900ms), "");
     EXPECT_EQ(ReasonAt(110s),
               "network: nobody heard in domain 7 on wlan0 for 10 s; multicast goes out; peers: none "
-              "(gateway/CONNECTING.md)");
+              "(docs/how_to/connect.md)");
 }
 
 TEST_F(LonelinessTest, SaysTheSameHoweverLongItLasts)

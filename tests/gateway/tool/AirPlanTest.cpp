@@ -1,4 +1,4 @@
-// The plan follows the rules of gateway/RADIO.md.
+// The plan follows the rules of docs/how_to/radio.md.
 #include "AirPlan.h"
 
 #include <gmock/gmock.h>
