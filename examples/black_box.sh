@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Flies the demo with recorders on board, ends it like a loss of power, and examines the recordings. See
-# usage() below and gateway/recording/after_a_flight.md.
+# usage() below and docs/how_to/after_a_flight.md.
 set +m -uo pipefail # no job control: processes started with & keep the process id that $! names
 
 usage() {

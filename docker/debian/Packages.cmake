@@ -47,6 +47,17 @@ set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= ${RABIT_PYTHON_VERSION}), p
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-pandas, python3-matplotlib, rabit-tools")
 set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python package rabit: nodes of a fleet, its messages and queues, and its recordings.")
 
+# The manual has to be built before it is packed, by the target `manual`, which needs tools of its own.
+option(RABIT_PACKAGE_MANUAL "Pack the manual as rabit-doc" OFF)
+if(RABIT_PACKAGE_MANUAL)
+  list(APPEND CPACK_COMPONENTS_ALL doc)
+  set(CPACK_DEBIAN_DOC_PACKAGE_NAME rabit-doc)
+  set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)
+  set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
+  set(CPACK_COMPONENT_DOC_DESCRIPTION "The manual of Distributed Rabit, for a browser: file:///usr/share/doc/rabit-doc/html/index.html")
+  install(DIRECTORY ${CMAKE_BINARY_DIR}/manual/html DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/rabit-doc COMPONENT doc EXCLUDE_FROM_ALL)
+endif()
+
 # Debian requires a copyright file in each package.
 foreach(component IN LISTS CPACK_COMPONENTS_ALL)
   string(TOUPPER ${component} upper)

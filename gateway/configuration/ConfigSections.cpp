@@ -155,6 +155,12 @@ ConfigSection RecordSection()
           "pauses. Default: 1 GiB."},
          {"memory", "size from 1MB to 64GB", "", "100MB",
           "Bytes that may wait for the disk. Further messages are dropped and counted. Default: 64 MiB."},
+         {"backfill", "list of messages under `subscribe`", "", "[Pose]",
+          "Messages of other nodes whose missing posts are requested from the recordings there."},
+         {"backfill_last", "time from 1s to 1440min", "60min", "10min", "Older posts are not requested."},
+         {"backfill_to", "list of nodes; `*` and `?` are wildcards", "", "[ground]",
+          "Nodes that may request posts from this recording. Default: everybody without keys, nobody with "
+          "keys."},
          {"black_box", "mapping", "", "{before: 60s}",
           "With it, files are written for events only. Default: everything is written."}}};
 }

@@ -63,7 +63,7 @@ std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeersOve
             Listed(config.Interfaces, "all interfaces") + " for " +
             std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Patience).count()) + " s; " +
             WhatGoesOut(config, counters) + "; peers: " + Listed(config.Peers, "none") +
-            " (gateway/CONNECTING.md)",
+            " (docs/how_to/connect.md)",
         true};
 }
 

@@ -16,10 +16,10 @@ namespace Rabit::Tool
 namespace
 {
 
-// Nearly the largest measured announcement of a participant, in bytes on the air (gateway/RADIO.md).
+// Nearly the largest measured announcement of a participant, in bytes on the air (docs/how_to/radio.md).
 constexpr double Announcement = 510.0;
 // Bytes of the frame around a queue message, and of an acknowledgement; both are samples of the gateways
-// (gateway/RADIO.md).
+// (docs/how_to/radio.md).
 constexpr std::size_t LinkFrame = 36;
 
 double Seconds(std::chrono::nanoseconds time)

@@ -140,7 +140,7 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
     }
     catch (const NetworkError &error)
     {
-        findings.push_back({Level::Problem, "network", error.what(), "gateway/CONNECTING.md"});
+        findings.push_back({Level::Problem, "network", error.what(), "docs/how_to/connect.md"});
         code = NoNetwork;
     }
     const auto rank = [](const Finding &finding) { return static_cast<int>(finding.How); };

@@ -276,7 +276,7 @@ int FleetSession::NobodyThere()
     Output::Talk("nobody was heard in domain " + std::to_string(_config.Domain) + " over " +
                  _config.Transport +
                  "; `rabit doctor` finds the reason (--domain, --interface, --wait; "
-                 "gateway/CONNECTING.md)");
+                 "docs/how_to/connect.md)");
     for (const Gateway::Problem &problem : Fleet().problems)
     {
         Output::Talk(problem.subject + ": " + problem.reason);

@@ -30,7 +30,8 @@ def files(package):
     for name in names.splitlines():
         name = name.removeprefix(".")
         if not name.endswith("/"):
-            found.add(re.sub(r"(/usr/include/rabit(?:/\w+)*|/usr/lib/cmake/Rabit|/usr/lib/rabit/objects-\w+)/.*", r"\1/", name)
+            found.add(re.sub(r"(/usr/include/rabit(?:/\w+)*|/usr/lib/cmake/Rabit|/usr/lib/rabit/objects-\w+|"
+                             r"/usr/share/doc/rabit-doc/html)/.*", r"\1/", name)
                       if not name.endswith(".so") else name)
     return found
 

@@ -34,7 +34,7 @@ def a_lonely_node_says_what_it_can_know(case):
     with harness.Processes() as processes:
         sensor = case.start(processes, "sensor", "sensor")
         said = re.compile(f"gateway: network: nobody heard in domain {harness.domain()} on {INTERFACE} for 10 s; "
-                          r"multicast goes out; peers: none \(gateway/CONNECTING\.md\)$")
+                          r"multicast goes out; peers: none \(docs/how_to/connect\.md\)$")
         sensor.wait_for(said.search, LIMIT_S)
         case.start(processes, "display", "display")
         sensor.wait_for(re.compile("no longer: network: nobody heard").search, LIMIT_S)

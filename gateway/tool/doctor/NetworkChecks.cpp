@@ -89,7 +89,7 @@ std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<
                                                             : "; answered by " + Listed(trial.AnsweredFrom)) +
                                 (trial.HeardFrom.empty() ? "" : "; heard from " + Listed(trial.HeardFrom)),
                             trial.AnsweredFrom.empty() && trial.HeardFrom.empty()
-                                ? "if others should be there: gateway/CONNECTING.md"
+                                ? "if others should be there: docs/how_to/connect.md"
                                 : ""});
     }
     return findings;
@@ -115,7 +115,7 @@ std::vector<Finding> OfOtherParticipants(const GatewayConfig &config, const Netw
              Listed(others) + (others.size() == 1 ? " is" : " are") + " heard in domain " +
                  std::to_string(config.Domain) +
                  " and not among the nodes: other DDS programs and tools, or nodes whose beats do not come",
-             "nothing, unless a node is among them: gateway/CONNECTING.md"}};
+             "nothing, unless a node is among them: docs/how_to/connect.md"}};
 }
 
 std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode)

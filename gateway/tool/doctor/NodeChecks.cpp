@@ -102,11 +102,11 @@ std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const
     }
     for (const Gateway::Problem &problem : fleet.problems)
     {
-        findings.push_back({Level::Problem, problem.subject, problem.reason, "gateway/CONNECTING.md"});
+        findings.push_back({Level::Problem, problem.subject, problem.reason, "docs/how_to/connect.md"});
     }
     for (const Gateway::Problem &problem : ProblemsOfNodes(fleet))
     {
-        findings.push_back({Level::Problem, problem.subject, problem.reason, "gateway/CONNECTING.md"});
+        findings.push_back({Level::Problem, problem.subject, problem.reason, "docs/how_to/connect.md"});
     }
     if (!up.empty())
     {
@@ -226,7 +226,7 @@ std::vector<Finding> OfLosses(const std::vector<FleetSession::Node> &nodes)
         findings.push_back(
             {isMuch ? Level::Problem : Level::Note, "loss from " + node.Name,
              std::to_string(node.BeatsMissed) + " of " + std::to_string(all) + " beats did not come",
-             "rabit check, rabit bytes: whether the radio is full (gateway/RADIO.md); else a better signal"});
+             "rabit check, rabit bytes: whether the radio is full (docs/how_to/radio.md); else a better signal"});
     }
     if (findings.empty() && heard > 0)
     {

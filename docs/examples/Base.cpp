@@ -1,0 +1,55 @@
+// The small parts below all others.
+#include <gtest/gtest.h>
+#include <rabit/base/Assert.h>
+#include <rabit/base/Backoff.h>
+#include <rabit/base/Earliest.h>
+#include <rabit/base/Fnv1a.h>
+#include <rabit/base/LittleEndian.h>
+#include <rabit/base/NumberIn.h>
+#include <rabit/base/UtcText.h>
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace
+{
+
+using namespace std::chrono_literals;
+
+// [backoff]
+TEST(BaseExample, QuestionsAreRepeatedEverMoreSeldom)
+{
+    Rabit::Backoff pause({.First = 1s, .Longest = 3s});
+    EXPECT_EQ(pause.Next(), 1s);
+    EXPECT_EQ(pause.Next(), 2s);
+    EXPECT_EQ(pause.Next(), 3s);
+
+    using Time = std::chrono::nanoseconds;
+    Rabit::BackoffTimer<Time> timer({.First = 1s, .Longest = 3s});
+    timer.Begin(Time(10s));
+    EXPECT_TRUE(timer.IsDue(10s));
+    timer.Done(10s);
+    EXPECT_EQ(timer.Due(), Time(11s));
+    EXPECT_EQ(Rabit::Earliest<Time>({timer.Due(), std::nullopt}), Time(11s));
+}
+// [/backoff]
+
+// [bytes]
+TEST(BaseExample, NumbersAndBytes)
+{
+    std::vector<std::uint8_t> bytes;
+    Rabit::LittleEndian::Put(std::uint32_t{258}, bytes);
+    EXPECT_EQ(bytes[1], 1);
+    EXPECT_EQ(Rabit::NumberIn<int>("42"), 42);
+    EXPECT_FALSE(Rabit::NumberIn<int>("42 m"));
+    EXPECT_EQ(Rabit::Fnv1a().Add(std::string_view("uav1")).Sum(),
+              Rabit::Fnv1a().Add(std::string_view("uav1")).Sum());
+    EXPECT_EQ(Rabit::UtcText(std::uint64_t{0}), "1970-01-01T00:00:00.000Z");
+    RABIT_ASSERT(bytes.size() == 4);
+}
+// [/bytes]
+
+}  // namespace
