@@ -89,7 +89,8 @@ private:
 int Main(int argc, char **argv)
 {
     bool isQuiet = false;
-    Rabit::NodeProgram program{.ConfigFile = "uav.yaml"};
+    Rabit::NodeProgram program;
+    program.ConfigFile = "uav.yaml";
     program.Description = "Flies in formation.";
     program.AddOptions = [&isQuiet](CLI::App &app) { app.add_flag("--quiet", isQuiet, "Print nothing"); };
     program.AddManagers = [](Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config)
@@ -184,9 +185,12 @@ TEST(NodeFleetExample, AManagerSeesTheOthersAndTheirValues)
                   node.Reactor.AddManager(std::move(other));
               });
     fleet.RunFor(5s);
-    pose->altitude_m = 50;
-    pose->PostMessage();
-    fleet.RunFor(300ms);
+    for (int number = 1; number <= 20; ++number)
+    {
+        pose->altitude_m = 50;
+        pose->PostMessage();
+        fleet.RunFor(100ms);
+    }
     EXPECT_EQ(formation->Near, 1);
     EXPECT_TRUE(watch->IsAlone);  // there is no ground
 }

@@ -41,10 +41,9 @@ def sections(text):
             continue
         shown += [f"## {heading[:-1]}", ""]
         for entry in re.split(r"\n(?=  \S)", body):
-            name, _, rest = entry.strip().partition("  ")
-            if "\n" in name:  # the explanation begins in the next line
-                name, _, rest = name.partition("\n")
-            says = " ".join(rest.split())
+            # The explanation is behind the name, or in the next line.
+            name, *rest = re.split(r"\s{2,}", entry.strip(), maxsplit=1)
+            says = " ".join(" ".join(rest).split())
             shown += [f"`{name}`", f": {escaped(says) or '-'}", ""]
     return shown
 
