@@ -27,7 +27,7 @@ def finds_what_is_broken(folder):
 
 def main():
     root, programs, out, version = sys.argv[1:]
-    out = pathlib.Path(out)
+    out = pathlib.Path(out).resolve()
     if not finds_what_is_broken(out / "self_test"):
         print("the check of links does not find broken ones")
         return 1
