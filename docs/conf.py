@@ -17,6 +17,8 @@ myst_enable_extensions = ["colon_fence", "deflist"]
 myst_heading_anchors = 4
 # The sections of a README are linked from others by the anchors that GitHub gives them.
 suppress_warnings = ["myst.header"]
+# `--option` in text stays as it is.
+smartquotes = False
 highlight_language = "text"
 # Only what is typed is copied, not the prompt nor the output.
 copybutton_prompt_text = "$ "

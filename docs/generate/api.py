@@ -23,7 +23,8 @@ def quoted(files):
 def write(root, out, html, version):
     """Returns the file that lists the classes and their pages."""
     html.mkdir(parents=True)
-    headers.copy(public_headers(root), out / "headers")
+    examples = {file.name: file.read_text() for file in (root / "docs/examples").glob("*.cpp")}
+    headers.copy(public_headers(root), examples, out / "headers")
     header, unused, tags = out / "header.html", out / "unused", out / "tags.xml"
     subprocess.run(["doxygen", "-w", "html", header, unused, unused], cwd=out, check=True, capture_output=True)
     header.write_text(header.read_text().replace("</head>", (HERE / "head.html").read_text() + "</head>"))

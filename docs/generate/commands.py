@@ -3,6 +3,8 @@
 import re
 import subprocess
 
+# What CLI11 calls them, and people do not.
+HEADINGS = {"Positionals": "Arguments", "Subcommands": "Commands"}
 COMMAND = re.compile(r"^  (\w+) {2,}(.*)$", re.MULTILINE)
 
 
@@ -39,7 +41,7 @@ def sections(text):
         if not body.startswith("  ") or not heading.endswith(":"):
             shown += [part, ""]
             continue
-        shown += [f"## {heading[:-1]}", ""]
+        shown += [f"## {HEADINGS.get(heading[:-1], heading[:-1])}", ""]
         for entry in re.split(r"\n(?=  \S)", body):
             # The explanation is behind the name, or in the next line.
             name, *rest = re.split(r"\s{2,}", entry.strip(), maxsplit=1)

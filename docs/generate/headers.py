@@ -2,6 +2,7 @@
 
 import re
 
+DEFINED = re.compile(r"^class (\w+)[^;]*$")
 FULL = re.compile(r"^(?P<space>\s*)//(?P<text>(?: .*)?)$")
 BEHIND = re.compile(r"^(?P<code>\s*[^\s/].*?) +//(?P<text> .*)$")
 # In these Doxygen takes no commands, nor backslashes.
@@ -24,7 +25,16 @@ def next_code(lines, at):
     return lines[at].strip() if at < len(lines) else ""
 
 
-def in_doxygens_form(text):
+def places_of(name, examples):
+    """A paragraph with the examples of a class that Doxygen overlooks: it finds no class within <>."""
+    if any(re.search(rf"(?<!<)\bRabit::{name}\b", text) for text in examples.values()):
+        return []
+    links = [f'<a href="{file.replace(".", "_8")}-example.html">{file}</a>' for file, text in sorted(examples.items())
+             if re.search(rf"<Rabit::{name}\b", text)]
+    return ["///", "/// @par Examples", f"/// {', '.join(links)}"] if links else []
+
+
+def in_doxygens_form(text, examples):
     lines, shown = text.splitlines(), []
     column = None  # of the comment behind the code of the line above
     for at, line in enumerate(lines):
@@ -33,6 +43,11 @@ def in_doxygens_form(text):
             shown.append(f"{full['space']}///<{escaped(full['text'])}")
             continue
         column = None
+        defined = DEFINED.match(line)
+        if defined:
+            above = len(shown) - shown[-1].startswith("template")
+            if shown[above - 1].startswith("///"):
+                shown[above:above] = places_of(defined[1], examples)
         if full:
             below = next_code(lines, at)
             documents = below and not below.startswith(("#", "namespace", "}"))
@@ -45,9 +60,9 @@ def in_doxygens_form(text):
     return "\n".join(shown) + "\n"
 
 
-def copy(headers, to):
-    """Each header by the name by which programs include it."""
+def copy(headers, examples, to):
+    """Each header by the name by which programs include it. `examples`: texts by the names of their files."""
     for header in headers:
         place = to / str(header).rpartition("/include/")[2]
         place.parent.mkdir(parents=True, exist_ok=True)
-        place.write_text(in_doxygens_form(header.read_text()))
+        place.write_text(in_doxygens_form(header.read_text(), examples))
