@@ -3,6 +3,7 @@
 Each ```console block has a comment above it:
     <!-- run -->                   its commands end with 0, and print these lines
     <!-- run: exit code 3 -->      its last command ends with 3
+    <!-- run: until it is so -->   the same; they run again while they print something else, since nodes meet in their own time
     <!-- setup -->                 its commands hold for all later blocks: variables of the environment
     <!-- background: sensor -->    its command goes on; the test waits until it has printed these lines
     <!-- stop: sensor, display --> before what follows, these are told to end, and do so in order
@@ -22,6 +23,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "integration"))
@@ -85,16 +87,25 @@ class Guide:
             name, _, value = command.removeprefix("export ").partition("=")
             self.environment[name] = value
 
+    def wrong_with(self, command, wanted, code):
+        """What the command does that the page does not say; empty if it does what the page says."""
+        done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, timeout=LIMIT_S,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        missing = missing_of(wanted, done.stdout.splitlines())
+        what = f"did not print: {missing}" if missing else f"exit code {done.returncode}, not {code}"
+        return f"{what}\n{done.stdout}" if missing or done.returncode != code else ""
+
     def run(self, commands, more):
-        code = int(more.removeprefix("exit code ")) if more else 0
-        for command, wanted in commands:
-            done = subprocess.run(["bash", "-c", command], cwd=self.folder, env=self.environment, timeout=LIMIT_S,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
-            expected = code if command == commands[-1][0] else 0
-            missing = missing_of(wanted, done.stdout.splitlines())
-            if done.returncode != expected or missing:
-                what = f"did not print: {missing}" if missing else f"exit code {done.returncode}, not {expected}"
-                self.fail(command, f"{what}\n{done.stdout}")
+        codes = [0] * len(commands)
+        if more.startswith("exit code "):
+            codes[-1] = int(more.removeprefix("exit code "))
+        for (command, wanted), code in zip(commands, codes):
+            end = time.monotonic() + (LIMIT_S if more == "until it is so" else 0)
+            wrong = self.wrong_with(command, wanted, code)
+            while wrong and time.monotonic() < end:
+                wrong = self.wrong_with(command, wanted, code)
+            if wrong:
+                self.fail(command, wrong)
             self.ran += 1
 
     def background(self, commands, name):

@@ -10,10 +10,10 @@ namespace Rabit
 {
 
 // Reads a gateway's YAML file and validates it. The keys are those of GatewayConfig in lower case with
-// underscores; gateway/README.md lists them. `node` may be missing if nodeOverride is not empty, which takes
-// its place either way, so that one file can serve a fleet. Throws ConfigError: an unreadable file, broken
-// YAML, an unknown or repeated key, a value of the wrong kind or out of range, an unknown IDL type; each with
-// file, line and the nearest right word.
+// underscores; docs/reference/configuration.md is about them. `node` may be missing if nodeOverride is not
+// empty, which takes its place either way, so that one file can serve a fleet. Throws ConfigError: an
+// unreadable file, broken YAML, an unknown or repeated key, a value of the wrong kind or out of range, an
+// unknown IDL type; each with file, line and the nearest right word.
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride = "");
 
 // Returns why there is no such IDL type, for the error message; empty if there is one.
