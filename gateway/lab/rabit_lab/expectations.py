@@ -7,7 +7,7 @@ from rabit_lab import flight as flights
 from rabit_lab import units
 
 # A node that is not heard is LOST after 3.5 s; what explains it lies no further back than this.
-LOOK_BACK_S = 6.0
+LOOK_BACK_S = 4.5
 LISTED = 4  # of the things that were wrong
 
 TIME = r"([0-9.]+ ?(?:s|ms|min|h))"
@@ -143,8 +143,7 @@ class NoFalseLost(Expectation):
                     continue
                 lost += 1
                 began = time - LOOK_BACK_S
-                ended = any(life.ended is not None and life.ended >= began for life in flight.lives_of(node)
-                            if life.began < time)
+                ended = any(life.ended is not None and began <= life.ended <= time for life in flight.lives_of(node))
                 if ended or not flight.life_at(node, time) or flight.disturbed(began, time, node, observer.node) \
                         or flight.out_of_range(began, time, node, observer.node) \
                         or any(a <= time and b >= began for a, b in flight.pauses):

@@ -150,6 +150,11 @@ class ExpectationTest(InFolder):
             made.all_up(1)
             made.sees("ground", "uav1", 12.0, "LOST")
 
+        def lost_before_the_end(made):
+            lost(made)
+            for life in made.flight.lives:
+                life.ended, life.by = 30.1, "end"
+
         def cut(made):
             lost(made)
             made.flight.faults.append(flights.Fault(8, 20, "cut", ["uav1"], "cut uav1"))
@@ -162,6 +167,7 @@ class ExpectationTest(InFolder):
             lost(made)
             made.flight.lives_of("uav1")[0].ended = 8.5
         self.assertIn("ground lost uav1 at 12.0 s", self.judge("no false lost", lost).detail)
+        self.assertFalse(self.judge("no false lost", lost_before_the_end).good)
         self.assertFalse(self.judge("no false lost", cut_long_before).good)
         self.assertTrue(self.judge("no false lost", cut).good)
         self.assertTrue(self.judge("no false lost", killed).good)
