@@ -74,7 +74,6 @@ expect:
   - uav4 lost within 6s after 14s
   - uav4 up within 4s after 22s
   - "radio: used < 50%"
-  - no false lost
 """
 TRACK = """time_s,node,x,y,z
 0,uav1,0,0,0
