@@ -61,9 +61,37 @@ bool Take(std::size_t bytes, std::size_t &left)
     return fits;
 }
 
+// Adds the record if there is room for it; false if there is none.
+template <typename Record>
+bool Append(Record record, std::vector<Record> &records, std::size_t &left)
+{
+    const bool fits = Take(SizeOf(record), left);
+    if (fits)
+    {
+        records.push_back(std::move(record));
+    }
+    return fits;
+}
+
+// The same for a definition, which a file may repeat.
+template <typename Record>
+bool Define(Record record, std::map<std::uint16_t, Record> &records, std::size_t &left)
+{
+    const std::uint16_t id = record.Id;
+    return records.contains(id) ||
+           (Take(SizeOf(record), left) && records.emplace(id, std::move(record)).second);
+}
+
 std::string At(std::uint64_t offset)
 {
     return " at byte " + std::to_string(offset);
+}
+
+// Adds the record that was read; false if there is none, or it is beyond the limits.
+template <typename T>
+bool AddIf(std::optional<T> &&record, Contents &contents)
+{
+    return record && contents.Add(std::move(*record));
 }
 
 // Reads a file from the beginning to the end.
@@ -133,7 +161,7 @@ private:
                 good = TakeAttachment(record);
                 break;
             case Opcode::Metadata:
-                good = AddIf(Read<Metadata>(record.Content));
+                good = AddIf(Read<Metadata>(record.Content), _contents);
                 break;
             case Opcode::DataEnd:
                 _inSummary = true;
@@ -157,13 +185,6 @@ private:
         return header.has_value();
     }
 
-    // Adds the record that was read; false if there is none, or it is beyond the limits.
-    template <typename T>
-    bool AddIf(std::optional<T> &&record)
-    {
-        return record && _contents.Add(std::move(*record));
-    }
-
     bool TakeAttachment(const RecordScanner::Record &record)
     {
         auto attachment = Read<Attachment>(record.Content);
@@ -175,8 +196,8 @@ private:
 
     bool TakeDefinition(std::uint8_t code, ByteView content)
     {
-        return code == static_cast<std::uint8_t>(Opcode::Schema) ? AddIf(Read<Schema>(content))
-                                                                 : AddIf(Read<Channel>(content));
+        return code == static_cast<std::uint8_t>(Opcode::Schema) ? AddIf(Read<Schema>(content), _contents)
+                                                                 : AddIf(Read<Channel>(content), _contents);
     }
 
     bool TakeMessage(ByteView content)
@@ -305,13 +326,6 @@ std::optional<Bytes> ReadSummary(ByteSource &source)
     return summary;
 }
 
-// Adds the record that was read; false if there is none, or it is beyond the limits.
-template <typename T>
-bool AddIf(std::optional<T> &&record, Contents &contents)
-{
-    return record && contents.Add(std::move(*record));
-}
-
 std::optional<Metadata> ReadMetadataAt(ByteSource &source, const std::optional<MetadataIndex> &index)
 {
     const auto bytes = index ? ReadPart(source, index->Offset, index->Length) : std::nullopt;
@@ -376,52 +390,27 @@ void Contents::AddProblem(std::string problem)
 
 bool Contents::Add(Schema schema)
 {
-    if (Schemas.count(schema.Id) != 0)
-    {
-        return true;  // it is repeated
-    }
-    const std::uint16_t id = schema.Id;
-    return Take(SizeOf(schema), _limits.Definitions) && Schemas.emplace(id, std::move(schema)).second;
+    return Define(std::move(schema), Schemas, _limits.Definitions);
 }
 
 bool Contents::Add(Channel channel)
 {
-    if (Channels.count(channel.Id) != 0)
-    {
-        return true;
-    }
-    const std::uint16_t id = channel.Id;
-    return Take(SizeOf(channel), _limits.Definitions) && Channels.emplace(id, std::move(channel)).second;
+    return Define(std::move(channel), Channels, _limits.Definitions);
 }
 
 bool Contents::Add(Metadata metadata)
 {
-    const bool fits = Take(SizeOf(metadata), _limits.Definitions);
-    if (fits)
-    {
-        MetadataRecords.push_back(std::move(metadata));
-    }
-    return fits;
+    return Append(std::move(metadata), MetadataRecords, _limits.Definitions);
 }
 
 bool Contents::Add(ChunkIndex chunk)
 {
-    const bool fits = Take(SizeOf(chunk), _limits.Indexes);
-    if (fits)
-    {
-        Chunks.push_back(std::move(chunk));
-    }
-    return fits;
+    return Append(std::move(chunk), Chunks, _limits.Indexes);
 }
 
 bool Contents::Add(AttachmentIndex attachment)
 {
-    const bool fits = Take(SizeOf(attachment), _limits.Indexes);
-    if (fits)
-    {
-        Attachments.push_back(std::move(attachment));
-    }
-    return fits;
+    return Append(std::move(attachment), Attachments, _limits.Indexes);
 }
 
 Contents ScanContents(ByteSource &source, const ContentsLimits &limits)
