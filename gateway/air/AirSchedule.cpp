@@ -16,7 +16,7 @@ constexpr double LargestPresenceBurst = 65536.0;
 // spacing, until the bytes that were caught up leave the last second.
 constexpr AirSchedule::Duration PromiseMargin = std::chrono::milliseconds(20);
 // Longest time by which a promised datagram is sent early. It is less than the shortest promise
-// (BeatShare::Quickest), so that others get their turn, too.
+// (BeatPace::DefaultPeriod), so that others get their turn, too.
 constexpr AirSchedule::Duration LongestLead = AirBudget::LongestThriftyDatagram;
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "air/BeatShare.h"
 #include "manager/ImportanceOf.h"
 #include "manager/TransportSettingsOf.h"
 #include "report/FleetReport.h"
@@ -25,11 +24,6 @@ constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 
 // Share of a budget that the exchange of keys may take, so that beats get through meanwhile.
 constexpr double KeyShare = 0.5;
-constexpr double SmallestBeat = 100.0;  // on the air
-// Without a budget peers measure the delay by the beats, so a node that sends much beats more often: once in
-// BytesForABeat times the bytes of a beat, but no sooner than ShortestBeatGap after the last one.
-constexpr double BytesForABeat = 20.0;
-constexpr Duration ShortestBeatGap = std::chrono::milliseconds(100);
 
 std::size_t LargestDatagramOf(const GatewayConfig &config)
 {
@@ -117,7 +111,7 @@ std::size_t AirTraffic::TakeSent()
 {
     const TransportCounters counters = _session->Counters();
     LookAtDiscovery(counters.DiscoveryBytes);
-    _sinceBeat += static_cast<double>(counters.SampleBytes - std::min(counters.SampleBytes, _samples));
+    _beats.SampleBytesSent(counters.SampleBytes - std::min(counters.SampleBytes, _samples));
     _samples = counters.SampleBytes;
     const std::uint64_t sent = counters.DiscoveryBytes + counters.SampleBytes;
     const std::uint64_t before = std::exchange(_sent, sent);
@@ -151,17 +145,14 @@ void AirTraffic::Watch(Duration now)
     }
 }
 
-// True if so many bytes were sent that the peers need a beat to measure their delay.
-bool AirTraffic::IsBeatWorth(Duration now) const
+bool AirTraffic::IsBeatDue(Duration now) const
 {
-    return _sinceBeat >= BytesForABeat * _beatBytes && !_config.Radio.Budget &&
-           now >= _beatAt + ShortestBeatGap;
+    return now >= _presence.BeatDue() || (!_config.Radio.Budget && _beats.IsWorthABeat(now));
 }
 
 std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
 {
-    _beatAt = now;
-    _sinceBeat = 0.0;
+    _beats.BeatSent(now);
     return _presence.SendBeat(now, std::min(most, BeatFormat::Largest));
 }
 
@@ -175,7 +166,8 @@ void AirTraffic::SetLimit(Duration now)
     _estimate.HeardLate(discoveryLate, _presence.LongDelay(now), now);
     const std::optional<double> carried = _estimate.Rate(now);
     const std::optional<double> budget = _config.Radio.Budget;
-    _presence.SetBeatPeriod(BeatShare::PeriodOf(_beatBytes, budget, _config.Radio.SlowestBeat, carried));
+    _presence.SetBeatPeriod(
+        BeatRate::PeriodOf(_beats.BeatBytes(), budget, _config.Radio.SlowestBeat, carried));
     if (budget)
     {
         _schedule.Reserve(_unscheduled.Rate(now));
@@ -190,13 +182,11 @@ Duration AirTraffic::ServeUnlimited(Duration now)
     {
         _turns->SendNext();
     }
-    Duration beatDue = _presence.BeatDue();
-    if (now >= beatDue || IsBeatWorth(now))
+    if (IsBeatDue(now))
     {
         SendBeat(BeatFormat::Largest, now);
-        beatDue = _presence.BeatDue();
     }
-    Duration next = std::min({beatDue, _links.Service(), _types.Service(now)});
+    Duration next = std::min({_presence.BeatDue(), _links.Service(), _types.Service(now)});
     for (TopicPublisher &publisher : _publishers)
     {
         next = std::min(next, publisher.Service(Now()));
@@ -221,7 +211,7 @@ void AirTraffic::KeepPromise(Duration now)
 void AirTraffic::LookAtBeat(Duration now)
 {
     KeepPromise(now);
-    if (now >= _presence.BeatDue() || IsBeatWorth(now))
+    if (IsBeatDue(now))
     {
         _schedule.Ready(_beat, BeatBytes(now));
     }
@@ -237,7 +227,7 @@ std::size_t AirTraffic::BeatBytes(Duration now) const
 {
     const AirCost::Readers readers{.Destinations = _presence.BeatCopies()};
     const std::size_t least = _cost.Of(BeatFormat::Empty, readers);
-    return std::min(std::max(static_cast<std::size_t>(_beatBytes), least),
+    return std::min(std::max(static_cast<std::size_t>(_beats.BeatBytes()), least),
                     _cost.Of(_presence.BeatSize(now), readers));
 }
 
@@ -346,9 +336,7 @@ void AirTraffic::Send(StreamId id, Duration now)
     }
     else if (id == _beat)
     {
-        _sinceBeat = 0.0;
-        _beatBytes += (static_cast<double>(bytes) - _beatBytes) / 8.0;
-        _beatBytes = std::max(_beatBytes, SmallestBeat);
+        _beats.BeatTook(bytes);
         LookAtBeat(now);
     }
     else if (id == _typeTexts)

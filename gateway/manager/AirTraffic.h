@@ -21,6 +21,7 @@
 #include "manager/TypeExchange.h"
 #include "mirrors/TopicPublisher.h"
 #include "paths/PathChoice.h"
+#include "presence/BeatRate.h"
 #include "presence/Presence.h"
 #include "queues/LinkDriver.h"
 
@@ -39,9 +40,7 @@ namespace Rabit
 //   for, too, and a part of a budget is kept free for it when it is due.
 // - With a budget the exchange of keys may take half of it (DiscoveryTurns::SetKeyRate).
 // - Where the estimate is the only limit, a due beat does not wait.
-// - With a budget the beats take a twentieth of it, within 500 ms and `slowest_beat`. Without one, they take
-//   an eighth of the capacity estimate, within 500 ms and a second. Without an estimate, beats become more
-//   frequent while much is sent, up to ten a second.
+// - BeatRate tells how often beats are sent.
 //
 // Gateway's thread only.
 class AirTraffic
@@ -92,7 +91,7 @@ private:
     void SetLimit(Duration now);
     Duration ServeUnlimited(Duration now);
     Duration ServeLimited();
-    bool IsBeatWorth(Duration now) const;
+    bool IsBeatDue(Duration now) const;
     std::size_t BeatBytes(Duration now) const;
     std::size_t SendBeat(std::size_t most, Duration now);
     void KeepPromise(Duration now);
@@ -127,10 +126,8 @@ private:
     LinkStreams _linkStreams;
     AirReport _report;
 
-    double _beatBytes = 150.0;  // average size of late beats on the air
-    double _sinceBeat = 0.0;    // bytes of samples sent since the last beat
+    BeatRate _beats;
     std::uint64_t _samples = 0;
-    Duration _beatAt{0};
     std::uint64_t _sent = 0;  // as the transport counts, when it was last asked
     std::uint64_t _discovered = 0;
     Duration _watchedAt{0};

@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "air/AirCost.h"
-#include "air/BeatShare.h"
 #include "manager/TransportSettingsOf.h"
 #include "names/NamePattern.h"
+#include "presence/BeatRate.h"
 #include "wire/BeatFormat.h"
 
 namespace Rabit::Tool
@@ -81,8 +81,8 @@ private:
             states == 0
                 ? BeatFormat::Empty
                 : BeatFormat::WithNews + BeatFormat::State * std::min(states, BeatFormat::MostStates)));
-        const auto period = BeatShare::PeriodOf(beat * static_cast<double>(copies), _config.Radio.Budget,
-                                                _config.Radio.SlowestBeat);
+        const auto period = BeatRate::PeriodOf(beat * static_cast<double>(copies), _config.Radio.Budget,
+                                               _config.Radio.SlowestBeat);
         _plan.Items.push_back({"beats", beat, 1.0 / Seconds(period), copies});
         _plan.Items.push_back({"discovery", Announcement,
                                1.0 / Seconds(TransportSettingsOf(_config, 0).AnnouncementPeriod), copies});
