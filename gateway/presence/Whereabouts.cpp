@@ -1,5 +1,6 @@
 #include "presence/Whereabouts.h"
 
+#include <rabit/base/Printable.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -43,9 +44,7 @@ std::string In(const Gateway::Beat &beat)
     const auto end = std::find(bytes.begin(), bytes.end(), 0);
     std::string text(bytes.begin(), end);
     text.resize(std::min(text.size(), Size));
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text;
+    return Printable(std::move(text));
 }
 
 }  // namespace Rabit::Whereabouts

@@ -1,6 +1,7 @@
 #include "report/ProblemLog.h"
 
 #include <rabit/base/Fnv1a.h>
+#include <rabit/base/Printable.h>
 
 #include <algorithm>
 #include <iterator>
@@ -39,17 +40,10 @@ std::string WithoutNumbers(const std::string &text)
     return shape;
 }
 
-// Makes one line of printable ASCII: names in a reason may have come from the network.
+// Names in a reason may have come from the network.
 std::string OneLine(std::string text)
 {
-    if (text.size() > ProblemLog::LongestLine)
-    {
-        text.resize(ProblemLog::LongestLine - 3);
-        text += "...";
-    }
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text;
+    return Printable(std::move(text), ProblemLog::LongestLine);
 }
 
 std::string FirstWord(const std::string &text)

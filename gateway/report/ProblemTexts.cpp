@@ -1,5 +1,7 @@
 #include "report/ProblemTexts.h"
 
+#include <rabit/base/Printable.h>
+
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -10,19 +12,6 @@ namespace Rabit
 {
 namespace
 {
-
-// Returns one line of printable ASCII, not too long: the text may come from the network.
-std::string Clean(std::string text)
-{
-    if (text.size() > ProblemTexts::LongestText)
-    {
-        text.resize(ProblemTexts::LongestText - 3);
-        text += "...";
-    }
-    std::replace_if(
-        text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-    return text;
-}
 
 // Takes a line from the front, without its end.
 std::string_view TakeLine(std::string_view &text)
@@ -42,7 +31,7 @@ std::string ProblemTexts::ReportOf(const ProblemLog::Standing &standing)
     for (std::size_t i = 0; i < count; ++i)
     {
         const Gateway::Problem &problem = standing.Problems[i];
-        report += Clean(problem.subject + ": " + problem.reason) + '\n';
+        report += Printable(problem.subject + ": " + problem.reason, LongestText) + '\n';
     }
     return report;
 }
@@ -59,7 +48,7 @@ void ProblemTexts::Add(const PeerTable::Peer &node, const std::string &report)
     }
     while (!rest.empty() && texts.Lines.size() < MostTexts)
     {
-        texts.Lines.push_back(Clean(std::string(TakeLine(rest))));
+        texts.Lines.push_back(Printable(std::string(TakeLine(rest)), LongestText));
     }
     _known[node.Node] = std::move(texts);
 }

@@ -1,32 +1,22 @@
 #include "SafeText.h"
 
+#include <rabit/base/Printable.h>
+
 #include <algorithm>
 
 namespace Rabit::Tool
 {
-namespace
-{
-
-bool IsPrintable(char c)
-{
-    return c >= ' ' && c <= '~';
-}
-
-}  // namespace
 
 std::string SafeText(std::string_view text)
 {
-    std::string safe(text);
-    std::replace_if(
-        safe.begin(), safe.end(), [](char c) { return !IsPrintable(c); }, '?');
-    return safe;
+    return Printable(std::string(text));
 }
 
 std::string SafeLines(std::string_view text)
 {
     std::string safe(text);
     std::replace_if(
-        safe.begin(), safe.end(), [](char c) { return !IsPrintable(c) && c != '\n' && c != '\t'; }, '?');
+        safe.begin(), safe.end(), [](char c) { return (c < ' ' || c > '~') && c != '\n' && c != '\t'; }, '?');
     return safe;
 }
 

@@ -1,5 +1,7 @@
 #include "recording/merge/AgePlot.h"
 
+#include <rabit/base/Printable.h>
+
 #include <boost/algorithm/string/replace.hpp>
 
 #include <algorithm>
@@ -40,8 +42,7 @@ std::string Number(double value)
 // Escapes XML, and replaces all but printable ASCII by `?`: texts of a file may hold anything.
 std::string Escaped(std::string text)
 {
-    std::replace_if(
-        text.begin(), text.end(), [](char letter) { return letter < ' ' || letter > '~'; }, '?');
+    text = Printable(std::move(text));
     boost::algorithm::replace_all(text, "&", "&amp;");
     boost::algorithm::replace_all(text, "<", "&lt;");
     boost::algorithm::replace_all(text, ">", "&gt;");
