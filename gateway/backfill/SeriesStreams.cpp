@@ -120,7 +120,7 @@ void SeriesStreams::TakeWhole(const Series &series, Range range)
                                          {"incarnation", std::to_string(series.Incarnation)},
                                          {"first_stamp", std::to_string(range.First)},
                                          {"end_stamp", std::to_string(range.End)}};
-    _target->PutJson(_marks, json.dump());
+    _target->PutJson(_marks, json);
 }
 
 }  // namespace Rabit::Backfill

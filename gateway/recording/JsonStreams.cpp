@@ -1,5 +1,7 @@
 #include "recording/JsonStreams.h"
 
+#include "recording/rerun/StepText.h"
+
 namespace Rabit::JsonStreams
 {
 namespace
@@ -64,6 +66,13 @@ RecordingStream Events(const std::string &node)
 {
     return Make(node, "Events", "rabit.Event", R"({"type":"object","properties":{
 "event":{"type":"string","description":"the event that started the black box, such as a post or a refused message"}}})");
+}
+
+RecordingStream Steps(const std::string &node, const std::string &manager)
+{
+    RecordingStream stream = Make(node, "Steps/" + manager, "rabit.ManagerStep", Rerun::StepSchema());
+    stream.Metadata["rabit.manager"] = manager;
+    return stream;
 }
 
 }  // namespace Rabit::JsonStreams

@@ -16,6 +16,8 @@ RecordingStream Managers(const std::string &node);
 RecordingStream Clocks(const std::string &node);
 RecordingStream Outcomes(const std::string &node);
 RecordingStream Events(const std::string &node);
+// The steps of one manager, for `rerun`.
+RecordingStream Steps(const std::string &node, const std::string &manager);
 }  // namespace JsonStreams
 
 }  // namespace Rabit

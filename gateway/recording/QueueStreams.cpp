@@ -17,11 +17,6 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-std::string TextOf(const Json &json)
-{
-    return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
 }  // namespace
 
 QueueStreams::QueueStreams(std::shared_ptr<RecordingTarget> target, const RecordSettings &settings)
@@ -112,11 +107,11 @@ void QueueStreams::TellOutcome(std::string_view node, std::string_view queue, st
     }
     if (_settings.Queues)
     {
-        _target->PutJson(_outcomes, TextOf({{"id", std::to_string(id)},
-                                            {"node", node},
-                                            {"queue", queue},
-                                            {"outcome", outcome},
-                                            {"reason", reason}}));
+        _target->PutJson(_outcomes, {{"id", std::to_string(id)},
+                                     {"node", node},
+                                     {"queue", queue},
+                                     {"outcome", outcome},
+                                     {"reason", reason}});
     }
 }
 
@@ -129,8 +124,8 @@ void QueueStreams::Clocks(std::uint64_t incarnation, std::chrono::nanoseconds so
     if (std::exchange(_incarnation, incarnation) != incarnation)
     {
         // In each file, so that each tells the times of its posts by the clock of their samples.
-        _target->Inbox().SetMetadata("rabit.clock", {{"incarnation", std::to_string(incarnation)},
-                                                     {"source_to_log_ns", sourceToLog}});
+        _target->Inbox().SetMetadata(
+            "rabit.clock", {{"incarnation", std::to_string(incarnation)}, {"source_to_log_ns", sourceToLog}});
     }
     Json others = Json::array();
     for (const PeerClock &peer : peers)
@@ -140,10 +135,9 @@ void QueueStreams::Clocks(std::uint64_t incarnation, std::chrono::nanoseconds so
                           {"source_to_log_ns", std::to_string((peer.ToLocal + monotonicToLog).count())},
                           {"uncertain_by_ns", peer.RoundTrip ? Json(peer.RoundTrip->count() / 2) : Json()}});
     }
-    _target->PutJson(_clocks,
-                     TextOf({{"incarnation", std::to_string(incarnation)},
-                             {"source_to_log_ns", sourceToLog},
-                             {"peers", others}}));
+    _target->PutJson(
+        _clocks,
+        {{"incarnation", std::to_string(incarnation)}, {"source_to_log_ns", sourceToLog}, {"peers", others}});
 }
 
 std::vector<Gateway::Problem> QueueStreams::Problems()

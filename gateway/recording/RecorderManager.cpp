@@ -61,16 +61,15 @@ Mcap::TextMap ConfigurationMetadata(const GatewayConfig &config)
     return {{"file", config.File}, {"text", std::string(std::istreambuf_iterator<char>(stream), {})}};
 }
 
-std::string LogLine(std::uint64_t time, RabitLogLevel level, const std::string &text)
+nlohmann::ordered_json LogLine(std::uint64_t time, RabitLogLevel level, const std::string &text)
 {
     constexpr std::uint64_t second = 1000000000;
-    const nlohmann::ordered_json json = {{"timestamp", {{"sec", time / second}, {"nsec", time % second}}},
-                                         {"level", static_cast<int>(level) + 1},
-                                         {"message", text},
-                                         {"name", "rabit"},
-                                         {"file", ""},
-                                         {"line", 0}};
-    return json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+    return {{"timestamp", {{"sec", time / second}, {"nsec", time % second}}},
+            {"level", static_cast<int>(level) + 1},
+            {"message", text},
+            {"name", "rabit"},
+            {"file", ""},
+            {"line", 0}};
 }
 
 }  // namespace

@@ -59,9 +59,11 @@ public:
     {
         return _recorder.Inbox().Put({stream, sequence, Now(), postedAt, std::move(data)});
     }
-    void PutJson(std::uint32_t stream, const std::string &json)
+    // Likewise, as one line of ASCII.
+    void PutJson(std::uint32_t stream, const nlohmann::ordered_json &json)
     {
-        Put(stream, Now(), {json.begin(), json.end()});
+        const std::string text = json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
+        Put(stream, Now(), {text.begin(), text.end()});
     }
 
     // Tells of an event, for which a black box is written. Does nothing without one.
@@ -69,8 +71,7 @@ public:
     {
         if (_events)
         {
-            const nlohmann::ordered_json json = {{"event", what}};
-            PutJson(*_events, json.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace));
+            PutJson(*_events, {{"event", what}});
             Inbox().Happened(Now());
         }
     }

@@ -6,34 +6,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "recording/JsonStreams.h"
 #include "recording/rerun/StepText.h"
 
 namespace Rabit
 {
-namespace
-{
 
 using Rerun::StepEvent;
-
-RecordingStream StreamOf(const std::string &node, const std::string &manager)
-{
-    RecordingStream stream;
-    stream.Topic = node + "/Recorder/Steps/" + manager;
-    stream.Encoding = "json";
-    stream.SchemaName = "rabit.ManagerStep";
-    stream.SchemaEncoding = "jsonschema";
-    stream.SchemaText = Rerun::StepSchema();
-    stream.Metadata = {{"rabit.kind", "recorder"}, {"rabit.node", node}, {"rabit.manager", manager}};
-    return stream;
-}
-
-}  // namespace
 
 StepRecorder::StepRecorder(const std::string &manager, const RabitWorkspace &workspace,
                            std::shared_ptr<RecordingTarget> target)
     : _workspace(workspace),
       _target(std::move(target)),
-      _stream(_target->Inbox().AddStream(StreamOf(_target->Node(), manager))),
+      _stream(_target->Inbox().AddStream(JsonStreams::Steps(_target->Node(), manager))),
       _names(workspace)
 {
 }
@@ -59,18 +44,12 @@ void StepRecorder::EndStep(bool threw)
 
 void StepRecorder::ReadMonotonic(std::chrono::nanoseconds &time)
 {
-    StepEvent event;
-    event.What = StepEvent::Kind::Monotonic;
-    event.Monotonic = time;
-    _step.Events.push_back(std::move(event));
+    Add(StepEvent::Kind::Monotonic).Monotonic = time;
 }
 
 void StepRecorder::ReadGpsTime(double &gpsTimeSeconds)
 {
-    StepEvent event;
-    event.What = StepEvent::Kind::GpsTime;
-    event.GpsTime = gpsTimeSeconds;
-    _step.Events.push_back(std::move(event));
+    Add(StepEvent::Kind::GpsTime).GpsTime = gpsTimeSeconds;
 }
 
 void StepRecorder::Fetched(const PublishSubscribeMessage &global, const RabitMessage &message,
@@ -111,8 +90,7 @@ void StepRecorder::Added(bool accepted)
 
 void StepRecorder::Listed(std::vector<MessageInfo> &messages)
 {
-    StepEvent event;
-    event.What = StepEvent::Kind::Listed;
+    StepEvent &event = Add(StepEvent::Kind::Listed);
     for (const MessageInfo &message : messages)
     {
         if (_listed.insert(message.Name).second)
@@ -123,14 +101,17 @@ void StepRecorder::Listed(std::vector<MessageInfo> &messages)
             event.Names.emplace_back(message.Name, type == nullptr ? "" : type->Name());
         }
     }
-    _step.Events.push_back(std::move(event));
+}
+
+StepEvent &StepRecorder::Add(StepEvent::Kind what)
+{
+    return _step.Events.emplace_back(StepEvent{.What = what});
 }
 
 StepEvent &StepRecorder::Add(StepEvent::Kind what, const std::string &name, const RabitMessage &message,
                              bool withSample)
 {
-    StepEvent event;
-    event.What = what;
+    StepEvent &event = Add(what);
     event.Name = name;
     const PostTime time = message.GetPostTime();
     event.GpsTime = time.GpsTimeSeconds;
@@ -146,8 +127,7 @@ StepEvent &StepRecorder::Add(StepEvent::Kind what, const std::string &name, cons
             event.Sample.resize(type->Serialize(message, event.Sample));
         }
     }
-    _step.Events.push_back(std::move(event));
-    return _step.Events.back();
+    return event;
 }
 
 }  // namespace Rabit

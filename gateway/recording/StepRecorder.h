@@ -38,6 +38,7 @@ public:
     void Listed(std::vector<MessageInfo> &messages) override;
 
 private:
+    Rerun::StepEvent &Add(Rerun::StepEvent::Kind what);
     Rerun::StepEvent &Add(Rerun::StepEvent::Kind what, const std::string &name, const RabitMessage &message,
                           bool withSample);
 

@@ -7,18 +7,14 @@
 #include <iterator>
 #include <limits>
 
+#include "Output.h"
+
 namespace Rabit::Tool::LiveProtocol
 {
 namespace
 {
 
 using Json = nlohmann::ordered_json;
-
-// Writes ASCII; text that is not UTF-8 is replaced.
-std::string Dump(const Json &json)
-{
-    return json.dump(-1, ' ', true, Json::error_handler_t::replace);
-}
 
 std::optional<std::uint32_t> NumberOf(const Json &value)
 {
@@ -96,12 +92,12 @@ std::optional<std::string_view> ChosenOf(std::string_view asked)
 
 std::string ServerInfo(const std::string &name, const std::string &session)
 {
-    return Dump({{"op", "serverInfo"},
-                 {"name", name},
-                 {"capabilities", Json::array()},
-                 {"supportedEncodings", Json::array()},
-                 {"metadata", Json::object()},
-                 {"sessionId", session}});
+    return Output::JsonText({{"op", "serverInfo"},
+                             {"name", name},
+                             {"capabilities", Json::array()},
+                             {"supportedEncodings", Json::array()},
+                             {"metadata", Json::object()},
+                             {"sessionId", session}});
 }
 
 std::string Advertise(std::span<const Channel> channels)
@@ -116,7 +112,7 @@ std::string Advertise(std::span<const Channel> channels)
                         {"schema", channel.SchemaText},
                         {"schemaEncoding", channel.SchemaEncoding}});
     }
-    return Dump({{"op", "advertise"}, {"channels", std::move(list)}});
+    return Output::JsonText({{"op", "advertise"}, {"channels", std::move(list)}});
 }
 
 std::string Status(Level level, const std::string &message, const std::string &id)
@@ -126,7 +122,7 @@ std::string Status(Level level, const std::string &message, const std::string &i
     {
         status["id"] = id;
     }
-    return Dump(status);
+    return Output::JsonText(status);
 }
 
 std::vector<std::uint8_t> MessageData(std::uint32_t subscription, std::uint64_t time,

@@ -8,6 +8,8 @@
 #include <string_view>
 #include <utility>
 
+#include "Output.h"
+
 namespace Rabit::Tool
 {
 namespace
@@ -172,7 +174,7 @@ std::optional<std::string> PanelMapping::Show(const std::string &node, const std
         constexpr int info = 2;
         shown.What["level"] = info;
     }
-    return shown.What.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return Output::JsonText(shown.What);
 }
 
 std::string PanelMapping::WhyNot(const std::string &value) const
@@ -190,8 +192,8 @@ LiveProtocol::Channel Channel()
 
 std::string Line(std::uint64_t time, int level, const std::string &name, const std::string &message)
 {
-    const Json line = {{"timestamp", TimeOf(time)}, {"level", level}, {"name", name}, {"message", message}};
-    return line.dump(-1, ' ', true, Json::error_handler_t::replace);
+    return Output::JsonText(
+        {{"timestamp", TimeOf(time)}, {"level", level}, {"name", name}, {"message", message}});
 }
 
 }  // namespace PanelLog
