@@ -124,7 +124,7 @@ ALLOWED = {
                        "room names", "room mcap", "room recording", "room merge"},
     # Whole nodes on a simulated network, for tests.
     "gateway/testing": {"core", "transport", "simulated backend", "gateway", "testing"},
-    "gateway/node": {"core", "idl", "factory", "gateway", "node", "recording", "backfill", "CLI11"},
+    "gateway/node": {"core", "idl", "factory", "gateway", "node", "recording", "backfill", "network", "CLI11"},
     # Programs that are measured against each other. Nodes name no vendor. The plain programs of each vendor show what
     # a user gets without Rabit, and so include nothing of it.
     "tests/bench": {"core", "idl", "idl dynamic", "transport", "factory", "simulated backend", "gateway", "gateway messages",
@@ -139,7 +139,7 @@ ALLOWED = {
     "examples": {"backfill", "core", "idl", "factory", "gateway", "node", "recording", "gateway messages", "user messages", "CLI11",
                  "network", "yaml-cpp"},
     # Serves TLS, with keys of its own.
-    "examples/ground_station/web": {"core", "idl", "gateway", "gateway messages", "user messages", "network", "OpenSSL",
+    "examples/ground_station/web": {"core", "idl", "gateway", "node", "gateway messages", "user messages", "network", "OpenSSL",
                                     "room keys"},
 }
 

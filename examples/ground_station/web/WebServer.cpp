@@ -3,21 +3,15 @@
 #include "HttpSession.h"
 #include "PageSession.h"
 
-#include <rabit/RabitLog.h>
-
 #include <boost/asio/post.hpp>
 
-#include <exception>
+#include <stdexcept>
 #include <utility>
 
 namespace Ground
 {
 namespace
 {
-using boost::asio::ip::tcp;
-
-constexpr std::chrono::milliseconds PauseAfterFailure{100};
-
 // Guards by the allowed host names: those of this machine, and those in its certificate.
 RequestGuard GuardOf(const WebServer::Settings &settings)
 {
@@ -79,13 +73,12 @@ WebServer::~WebServer()
 
 void WebServer::Start(RequestHandler handler)
 {
-    if (_thread.joinable())
-        throw std::logic_error("WebServer::Start: it is started already");
-    if (!_io)
+    if (!_server)
         Listen();
+    if (_server->IsStarted())
+        throw std::logic_error("WebServer::Start: it is started already");
     _context->Handler = std::move(handler);
-    Accept();
-    _thread = std::thread([this] { Serve(); });
+    _server->Start("The web server", [this](Rabit::TcpServer::Socket socket) { Take(std::move(socket)); });
 }
 
 void WebServer::Stop()
@@ -95,14 +88,7 @@ void WebServer::Stop()
         _postable = nullptr;
         _next.reset();
     }
-    if (_thread.joinable())
-    {
-        _io->stop();
-        _thread.join();
-    }
-    _pause.reset();
-    _acceptor.reset();
-    _io.reset();
+    _server.reset();
     _context->Latest.reset();
 }
 
@@ -146,67 +132,25 @@ WebServer::Counters WebServer::Count() const
 
 void WebServer::Listen()
 {
-    auto io = std::make_unique<boost::asio::io_context>(1);
-    auto acceptor = std::make_unique<tcp::acceptor>(*io);
     try
     {
-        acceptor->open(_endpoint.protocol());
-        acceptor->set_option(tcp::acceptor::reuse_address(true));
-        acceptor->bind(_endpoint);
-        acceptor->listen();
-        _endpoint = acceptor->local_endpoint();
+        _server = std::make_unique<Rabit::TcpServer>(_endpoint);
     }
     catch (const boost::system::system_error &error)
     {
         throw WebServerError("The web page cannot be served at " + WebPageUrl(_endpoint) + ": " +
                              error.code().message());
     }
-    _io = std::move(io);
-    _acceptor = std::move(acceptor);
-    _pause.emplace(*_io);
+    _endpoint = _server->Address();
     const std::lock_guard lock(_mutex);
-    _postable = _io.get();
+    _postable = &_server->Io();
 }
 
-void WebServer::Serve()
-{
-    while (!_io->stopped())
-    {
-        try
-        {
-            _io->run();
-        }
-        catch (const std::exception &error)
-        {
-            Rabit::RabitLog::Write(Rabit::RabitLogLevel::Error,
-                                   std::string("The web server goes on after: ") + error.what());
-        }
-    }
-}
-
-void WebServer::Accept()
-{
-    _acceptor->async_accept([this](const boost::system::error_code &error, tcp::socket socket)
-                            { OnAccepted(error, std::move(socket)); });
-}
-
-void WebServer::OnAccepted(const boost::system::error_code &error, tcp::socket socket)
-{
-    if (error)
-    {
-        // For instance out of file descriptors. An immediate retry would keep the processor busy.
-        _pause->expires_after(PauseAfterFailure);
-        _pause->async_wait([this](const boost::system::error_code &) { Accept(); });
-        return;
-    }
-    Take(std::move(socket));
-    Accept();
-}
-
-void WebServer::Take(tcp::socket socket)
+void WebServer::Take(Rabit::TcpServer::Socket socket)
 {
     boost::system::error_code ignored;
-    const tcp::endpoint from = socket.remote_endpoint(ignored);  // no address if the peer has left
+    const Rabit::TcpServer::Endpoint from =
+        socket.remote_endpoint(ignored);  // no address if the peer has left
     const ConnectionGate::Decision decision = _context->Gate.Arrive(from.address());
     if (decision.Dropped)
     {

@@ -6,9 +6,7 @@
 #include "WebAddress.h"
 #include "WebSecrets.h"
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
+#include <rabit/node/TcpServer.h>
 
 #include <chrono>
 #include <cstddef>
@@ -19,7 +17,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace Ground
@@ -102,22 +99,14 @@ public:
     Counters Count() const;
 
 private:
-    using Socket = boost::asio::ip::tcp::socket;
-
     void Listen();
-    void Serve();
-    void Accept();
-    void OnAccepted(const boost::system::error_code &error, Socket socket);
-    void Take(Socket socket);
+    void Take(Rabit::TcpServer::Socket socket);
     void Distribute();
 
     const std::unique_ptr<ServerContext> _context;
     boost::asio::ip::tcp::endpoint _endpoint;
     // Made anew for each run: destroying it ends every session.
-    std::unique_ptr<boost::asio::io_context> _io;
-    std::unique_ptr<boost::asio::ip::tcp::acceptor> _acceptor;
-    std::optional<boost::asio::steady_timer> _pause;
-    std::thread _thread;
+    std::unique_ptr<Rabit::TcpServer> _server;
     std::mutex _mutex;
     boost::asio::io_context *_postable = nullptr;  // guarded; null: posting is not allowed
     std::shared_ptr<const std::string> _next;      // guarded; not null: a call of Distribute waits

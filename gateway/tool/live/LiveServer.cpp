@@ -1,10 +1,7 @@
 #include "live/LiveServer.h"
 
-#include <rabit/RabitLog.h>
-
 #include <boost/asio/post.hpp>
 
-#include <exception>
 #include <random>
 #include <utility>
 
@@ -17,10 +14,6 @@ namespace Rabit::Tool
 namespace
 {
 
-using boost::asio::ip::tcp;
-
-constexpr std::chrono::milliseconds PauseAfterFailure{100};
-
 std::string RandomId()
 {
     std::random_device random;
@@ -31,21 +24,25 @@ std::string RandomId()
 
 LiveServer::LiveServer(const Settings &settings) : _context(new LiveContext{settings, RandomId(), {}, {}})
 {
-    Listen();
-    Accept();
-    _thread = std::thread([this] { Serve(); });
+    try
+    {
+        _server = std::make_unique<TcpServer>(settings.Endpoint);
+    }
+    catch (const boost::system::system_error &error)
+    {
+        throw NetworkError("viewers cannot be served at " + settings.Endpoint.address().to_string() + ":" +
+                           std::to_string(settings.Endpoint.port()) + ": " + error.code().message());
+    }
+    _server->Start("the server of viewers", [this](TcpServer::Socket socket)
+                   { std::make_shared<LiveSession>(std::move(socket), *_context)->Begin(); });
 }
 
-LiveServer::~LiveServer()
-{
-    _io.stop();
-    _thread.join();
-}
+LiveServer::~LiveServer() = default;
 
 std::uint32_t LiveServer::AddChannel(LiveProtocol::Channel channel, bool isState)
 {
     channel.Id = ++_lastChannel;
-    boost::asio::post(_io,
+    boost::asio::post(_server->Io(),
                       [this, channel, isState]
                       {
                           _context->Channels[channel.Id] = {channel, isState, nullptr};
@@ -67,7 +64,7 @@ void LiveServer::Show(std::uint32_t channel, std::uint64_t time, std::vector<std
         return;
     }
     auto value = std::make_shared<const LiveValue>(LiveValue{channel, time, std::move(bytes)});
-    boost::asio::post(_io,
+    boost::asio::post(_server->Io(),
                       [this, size, value = std::move(value)]
                       {
                           _backlog -= size;
@@ -78,58 +75,6 @@ void LiveServer::Show(std::uint32_t channel, std::uint64_t time, std::vector<std
                               session->Show(value);
                           }
                       });
-}
-
-void LiveServer::Listen()
-{
-    try
-    {
-        _acceptor.open(_context->Settings.Endpoint.protocol());
-        _acceptor.set_option(tcp::acceptor::reuse_address(true));
-        _acceptor.bind(_context->Settings.Endpoint);
-        _acceptor.listen();
-        _endpoint = _acceptor.local_endpoint();
-    }
-    catch (const boost::system::system_error &error)
-    {
-        throw NetworkError(
-            "viewers cannot be served at " + _context->Settings.Endpoint.address().to_string() + ":" +
-            std::to_string(_context->Settings.Endpoint.port()) + ": " + error.code().message());
-    }
-}
-
-void LiveServer::Accept()
-{
-    _acceptor.async_accept(
-        [this](const boost::system::error_code &error, tcp::socket socket)
-        {
-            if (error)
-            {
-                // For instance, no file descriptors are left. Trying again at once would keep the
-                // processor busy.
-                _pause.expires_after(PauseAfterFailure);
-                _pause.async_wait([this](const boost::system::error_code &) { Accept(); });
-                return;
-            }
-            std::make_shared<LiveSession>(std::move(socket), *_context)->Begin();
-            Accept();
-        });
-}
-
-void LiveServer::Serve()
-{
-    while (!_io.stopped())
-    {
-        try
-        {
-            _io.run();
-        }
-        catch (const std::exception &error)
-        {
-            RabitLog::Write(RabitLogLevel::Error,
-                            std::string("the server of viewers goes on after: ") + error.what());
-        }
-    }
 }
 
 // A copy, because a session that cannot be written to removes itself.

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/asio/steady_timer.hpp>
+#include <rabit/node/TcpServer.h>
 
 #include <atomic>
 #include <chrono>
@@ -10,7 +8,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "live/LiveProtocol.h"
@@ -60,7 +57,7 @@ public:
     // Shows a value of that channel; `time` is its arrival, UTC in nanoseconds since 1970.
     void Show(std::uint32_t channel, std::uint64_t time, std::vector<std::uint8_t> bytes);
 
-    boost::asio::ip::tcp::endpoint Endpoint() const { return _endpoint; }
+    boost::asio::ip::tcp::endpoint Endpoint() const { return _server->Address(); }
     struct Counters
     {
         std::uint64_t Viewers = 0;  // now
@@ -70,19 +67,12 @@ public:
     Counters Count() const;
 
 private:
-    void Listen();
-    void Accept();
-    void Serve();
     std::vector<LiveSession *> Sessions() const;
 
     const std::unique_ptr<LiveContext> _context;
     std::atomic<std::uint32_t> _lastChannel{0};
     std::atomic<std::size_t> _backlog{0};  // bytes
-    boost::asio::ip::tcp::endpoint _endpoint;
-    boost::asio::io_context _io{1};  // ends the sessions, which use the context
-    boost::asio::ip::tcp::acceptor _acceptor{_io};
-    boost::asio::steady_timer _pause{_io};
-    std::thread _thread;
+    std::unique_ptr<TcpServer> _server;    // ends the sessions, which use the context
 };
 
 }  // namespace Rabit::Tool
