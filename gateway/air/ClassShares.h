@@ -5,11 +5,22 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-
-#include "air/TrafficClassWords.h"
+#include <string>
+#include <vector>
 
 namespace Rabit
 {
+
+inline constexpr std::size_t TrafficClassCount = 5;
+
+// The words that a configuration may use, in the order of the classes: all but `presence`.
+inline const std::vector<std::string> TrafficClassWords = {"command", "state", "telemetry", "bulk"};
+
+// The class of the word at that index.
+inline TrafficClass ChosenClass(std::size_t index)
+{
+    return static_cast<TrafficClass>(index + 1);
+}
 
 // Chooses the class that sends next, of those that have something to send.
 //

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "air/TrafficClassWords.h"
+#include "air/ClassShares.h"
 #include "configuration/ConfigSections.h"
 #include "configuration/ForeignEntries.h"
 #include "configuration/PanelEntries.h"

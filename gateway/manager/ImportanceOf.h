@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "queues/SendOptions.h"
+#include "wire/GatewayTopics.h"
 
 namespace Rabit
 {
@@ -19,7 +20,7 @@ struct Importance
 
 inline TrafficClass ImportanceOf(const PublishRule &rule)
 {
-    return rule.Class.value_or(rule.Qos == QosProfile::State ? TrafficClass::State : TrafficClass::Telemetry);
+    return rule.Class.value_or(GatewayTopics::ClassOf(rule.Qos));
 }
 
 inline Importance ImportanceOf(const std::vector<SendRule> &rules, std::string_view node,

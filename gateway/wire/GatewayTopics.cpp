@@ -39,4 +39,9 @@ TopicQos QosOf(QosProfile profile)
     return qos;
 }
 
+TrafficClass ClassOf(QosProfile profile)
+{
+    return profile == QosProfile::State ? TrafficClass::State : TrafficClass::Telemetry;
+}
+
 }  // namespace Rabit::GatewayTopics

@@ -27,5 +27,7 @@ TopicDescription Describe(const std::string &topic, const MessageType &type);
 
 // The DDS settings of a profile.
 TopicQos QosOf(QosProfile profile);
+// The priority of messages of that profile whose rule has no class.
+TrafficClass ClassOf(QosProfile profile);
 
 }  // namespace Rabit::GatewayTopics

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "air/TrafficClassWords.h"
+#include "air/ClassShares.h"
 
 namespace Rabit
 {
