@@ -106,8 +106,7 @@ std::string WhyNot(const ForeignRule &rule, const TopicQos &ours, const RemoteEn
     if (!IsInDefaultPartition(theirs))
     {
         return std::string("a program ") + does + topic + " in the partition " +
-               ListedNames(theirs.Partitions, [](const std::string &name) { return name; }) +
-               ", this node in the default one";
+               ListedNames(theirs.Partitions) + ", this node in the default one";
     }
     const TopicQos there{theirs.Reliability, theirs.Durability, 1};
     const TopicQos &offered = IsRead(rule) ? there : ours;
@@ -176,8 +175,7 @@ std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
         return "no program " + does + where + beside;
     }
     return "no program " + does + where + "; a program that listens on other interfaces than " +
-           ListedNames(network.Interfaces, [](const std::string &name) { return name; }) +
-           " cannot be reached";
+           ListedNames(network.Interfaces) + " cannot be reached";
 }
 
 }  // namespace Rabit::ForeignMatch

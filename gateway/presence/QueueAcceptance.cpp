@@ -68,7 +68,7 @@ std::string WhyNotAccepted(QueueAcceptance acceptance, const PeerTable::Peer &pe
             return peer.Node + " accepts no queue `" + queue + "`; it accepts " + QueuesOf(peer);
         case QueueAcceptance::NotFromHere:
             return "queue `" + queue + "` of " + peer.Node + " accepts no messages of this node, but of " +
-                   ListedNames(FindQueue(peer, queue)->from, [](const auto &name) { return name; });
+                   ListedNames(FindQueue(peer, queue)->from);
         case QueueAcceptance::WrongType:
             return "queue `" + queue + "` of " + peer.Node + " does not accept `" + type + "`; it accepts " +
                    ListedNames(FindQueue(peer, queue)->types, [](const auto &taken) { return taken.type; });

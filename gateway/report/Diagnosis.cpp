@@ -135,10 +135,7 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeersOv
     }
     if (!anyNode && sinceStart >= Patience)
     {
-        add("",
-            "no node named " + ListedNames(wanted.Rule->From, [](const auto &name) { return name; }) +
-                " has been heard",
-            false);
+        add("", "no node named " + ListedNames(wanted.Rule->From) + " has been heard", false);
     }
     return problems;
 }

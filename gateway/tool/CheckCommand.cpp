@@ -1,25 +1,17 @@
 // rabit check: configurations of a fleet, against each other and against their budgets of the air. Joins no
 // network.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <memory>
 #include <tuple>
 
 #include "AirPlan.h"
 #include "CheckedFiles.h"
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetCheck.h"
 #include "IdlFiles.h"
-#include "JsonNumber.h"
-#include "MeterCommand.h"
-#include "Output.h"
 #include "SafeText.h"
 #include "Table.h"
 #include "names/NamePattern.h"
@@ -28,8 +20,6 @@ namespace Rabit::Tool
 {
 namespace
 {
-
-using Json = nlohmann::ordered_json;
 
 struct Options
 {
@@ -64,6 +54,19 @@ Stated StatedIn(const std::vector<std::string> &list, const std::string &option)
     return stated;
 }
 
+void CheckArguments(const Options &options)
+{
+    static_cast<void>(StatedIn(options.Rates, "--rate"));
+    static_cast<void>(StatedIn(options.Sizes, "--size"));
+    for (const std::string &file : options.Files)
+    {
+        if (const std::string why = CLI::ExistingFile(CheckedFiles::Parse(file).File); !why.empty())
+        {
+            throw CLI::ValidationError("FILE", why);
+        }
+    }
+}
+
 bool ShowFindings(const std::vector<FleetCheck::Finding> &findings, bool json)
 {
     bool isRead = true;
@@ -84,27 +87,17 @@ bool ShowJson(const AirPlan &plan)
     for (const AirItem &item : plan.Items)
     {
         items.push_back(Json{{"what", item.What},
-                             {"bytes", item.SizeKnown ? JsonNumber(item.Bytes) : Json(nullptr)},
-                             {"rate_hz", JsonNumber(Number(item.Rate))},
+                             {"bytes", item.SizeKnown ? Json(item.Bytes) : Json(nullptr)},
+                             {"rate_hz", Number(item.Rate)},
                              {"copies", item.Copies},
                              {"bytes_per_s", item.BytesPerSecond()}});
     }
     return Output::Object(Json{{"node", plan.Config->Node},
                                {"file", plan.Config->File},
                                {"air_bytes_per_s", plan.BytesPerSecond()},
-                               {"budget_bytes_per_s", JsonNumber(Number(plan.Config->Radio.Budget))},
+                               {"budget_bytes_per_s", Number(plan.Config->Radio.Budget)},
                                {"not_known", plan.NotKnown()},
                                {"items", items}});
-}
-
-bool ShowTable(const std::vector<std::vector<std::string>> &rows)
-{
-    bool isRead = true;
-    for (const std::string &line : TableLines(rows))
-    {
-        isRead = isRead && Output::Line(SafeText(line));
-    }
-    return isRead;
 }
 
 // Returns `rate and size of Findings Health, rate of Pose`.
@@ -276,7 +269,10 @@ int Run(const Options &options)
     }
     else if (!plans.empty())
     {
-        isRead = isRead && ShowTable(options.Verbose ? Details(plans) : Summary(plans));
+        for (const std::string &line : TableLines(options.Verbose ? Details(plans) : Summary(plans)))
+        {
+            isRead = isRead && Output::Line(SafeText(line));
+        }
     }
     if (!allGood && fleet.size() > 1)
     {
@@ -291,9 +287,10 @@ int Run(const Options &options)
 
 void AddCheckCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand(
-        "check", "What is wrong with configurations, alone and together, and what they put on the air");
+    const auto [command, options] = AddCommand<Options>(
+        app, chosen, "check",
+        "What is wrong with configurations, alone and together, and what they put on the air", &Run,
+        &CheckArguments);
     command
         ->add_option("FILE", options->Files,
                      "Configurations of all nodes of a fleet; uav1,uav2=uav.yaml: of several nodes")
@@ -307,20 +304,6 @@ void AddCheckCommand(CLI::App &app, Chosen &chosen)
     command->add_flag("-v,--verbose", options->Verbose, "Each thing that goes on the air");
     AddExamples(*command, {"rabit check uav.yaml", "rabit check uav1,uav2=uav.yaml ground.yaml",
                            "rabit check uav.yaml ground.yaml --idl uav.idl --rate Pose=10"});
-    command->callback(
-        [options, &chosen]
-        {
-            static_cast<void>(StatedIn(options->Rates, "--rate"));
-            static_cast<void>(StatedIn(options->Sizes, "--size"));
-            for (const std::string &file : options->Files)
-            {
-                if (const std::string why = CLI::ExistingFile(CheckedFiles::Parse(file).File); !why.empty())
-                {
-                    throw CLI::ValidationError("FILE", why);
-                }
-            }
-            chosen.RunToEnd = [options] { return Run(*options); };
-        });
 }
 
 }  // namespace Rabit::Tool

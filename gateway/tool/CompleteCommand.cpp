@@ -2,22 +2,17 @@
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/transport/TransportFactory.h>
 
-#include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
-#include <memory>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
 #include "Offers.h"
-#include "Output.h"
 #include "names/QosProfileWords.h"
 
 namespace Rabit::Tool
@@ -217,7 +212,7 @@ Candidates FromFleet(const Words &line, const std::string &command, const Words 
         return {};
     }
     FleetSession session(*config, options, wakeup);
-    session.WaitUntil(everybody, [] { return false; });
+    session.WaitUntil(everybody);
     session.WaitUntil(
         longest, [&session] { return session.IsAnybodyThere() && Offers::AreComplete(session.Nodes()); });
     return ArgumentsIn(session.Nodes(), command, before);

@@ -1,22 +1,16 @@
 // rabit doctor: problems of this machine, the network and the fleet, and remedies.
 #include <rabit/RabitLog.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
-#include <cstdio>
 #include <iterator>
-#include <memory>
 #include <numeric>
 #include <set>
 #include <string>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
-#include "Output.h"
 #include "SafeText.h"
+#include "Table.h"
 #include "doctor/MachineChecks.h"
 #include "doctor/NetworkChecks.h"
 #include "doctor/NetworkTrial.h"
@@ -59,17 +53,17 @@ bool Show(const Finding &finding, bool json)
 {
     if (json)
     {
-        return Output::Object(nlohmann::ordered_json{{"level", WordOf(finding.How)},
-                                                     {"subject", finding.Subject},
-                                                     {"text", finding.Text},
-                                                     {"advice", finding.Advice}});
+        return Output::Object(Json{{"level", WordOf(finding.How)},
+                                   {"subject", finding.Subject},
+                                   {"text", finding.Text},
+                                   {"advice", finding.Advice}});
     }
     const char *mark = finding.How == Level::Problem ? "! " : finding.How == Level::Note ? "- " : "  ";
     return Output::Line(SafeText(mark + finding.Subject + ": " + finding.Text +
                                  (finding.Advice.empty() ? "" : ". Do: " + finding.Advice)));
 }
 
-int Run(const CommonOptions &options, Wakeup &wakeup)
+int Examine(const CommonOptions &options, Wakeup &wakeup)
 {
     GatewayConfig config = ConfigOf(options);
     config.ProblemsOf = {"*"};
@@ -94,12 +88,12 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
                                          domains, AllDomains());
         FleetSession session(config, options, wakeup);
         double listened = options.Wait;
-        session.WaitUntil(listened, [] { return false; });
+        session.WaitUntil(listened);
         if (!session.IsAnybodyThere() && !options.IsWaitGiven)
         {
             // The reason may be a domain that is only listened to.
             listened = AllAnnounced;
-            session.WaitUntil(listened, [] { return false; });
+            session.WaitUntil(listened);
         }
         if (!options.IsWaitGiven)
         {
@@ -107,10 +101,8 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
         }
         if (wakeup.IsInterrupted())
         {
-            char text[80];
-            std::snprintf(text, sizeof text, "interrupted after %.0f of %.0f s: nothing is known",
-                          session.Seconds(), listened);
-            Output::Talk(text);
+            Output::Talk("interrupted after " + NumberText(session.Seconds(), 0) + " of " +
+                         NumberText(listened, 0, " s: nothing is known"));
             return Interrupted;
         }
         const std::vector<FleetSession::Node> nodes = session.Nodes();
@@ -168,14 +160,12 @@ int Run(const CommonOptions &options, Wakeup &wakeup)
 
 void AddDoctorCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<CommonOptions>();
-    CLI::App *command = app.add_subcommand(
-        "doctor", "What is wrong with this machine, the network and the fleet, and what to do");
+    const auto [command, options] = AddCommand<CommonOptions>(
+        app, chosen, "doctor", "What is wrong with this machine, the network and the fleet, and what to do",
+        &Examine);
     AddCommonOptions(*command, *options, 6.0);
     AddExamples(*command, {"rabit doctor", "rabit doctor --interface wlan0 --domain 7",
                            "rabit doctor --config uav.yaml --wait 35"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -1,26 +1,18 @@
 // rabit echo: the values of a message, as they come.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
-#include <cstdio>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 
 #include <rabit/idl/NearestWord.h>
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
-#include "Output.h"
 #include "Samples.h"
+#include "Table.h"
 
 namespace Rabit::Tool
 {
 namespace
 {
-
-using Json = nlohmann::ordered_json;
 
 struct Options
 {
@@ -102,11 +94,9 @@ public:
 private:
     bool PrintText(const Sample &sample)
     {
-        char age[48];
-        std::snprintf(age, sizeof age, "  age %.3f s  ", sample.Age);
         const auto text = _samples.Type().ToText(sample.Bytes);
-        return Output::Line(sample.Node + "/" + _samples.Message() + age +
-                            text.value_or("(too large to show)"));
+        return Output::Line(sample.Node + "/" + _samples.Message() + "  age " +
+                            NumberText(sample.Age, 3, " s  ") + text.value_or("(too large to show)"));
     }
 
     bool PrintJson(const Sample &sample)
@@ -159,10 +149,7 @@ int Show(const Options &options, FleetSession &session, Samples &samples, Wakeup
         }
         if (!any && taken.empty() && !wakeup.IsInterrupted() && session.Seconds() >= patience)
         {
-            for (const Gateway::Problem &problem : session.Fleet().problems)
-            {
-                Output::Talk(problem.subject + ": " + problem.reason);
-            }
+            session.TellProblems();
             Output::Talk("nothing has come yet");
             if (options.Once)
             {
@@ -190,8 +177,8 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddEchoCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("echo", "The values of a message, as they come");
+    const auto [command, options] =
+        AddCommand<Options>(app, chosen, "echo", "The values of a message, as they come", &Run);
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any node; Pose: of all nodes")
         ->required();
     AddCommonOptions(*command, options->Common, 5.0);
@@ -200,8 +187,6 @@ void AddEchoCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--rate", options->Rate, "So many a second of each node at most")->check(AboveZero());
     AddExamples(*command, {"rabit echo uav1/Pose --once",
                            "rabit echo 'uav*/Pose' --field altitude_m --rate 1", "rabit echo Pose --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

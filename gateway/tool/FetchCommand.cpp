@@ -37,7 +37,6 @@ namespace Rabit::Tool
 namespace
 {
 
-using Json = nlohmann::ordered_json;
 using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
 
 // Longest sleep between two looks, in seconds.

@@ -18,11 +18,6 @@ namespace
 
 using Fleet = std::vector<GatewayConfig>;
 
-std::string Listed(const std::vector<std::string> &names)
-{
-    return ListedNames(names, [](const std::string &name) { return name; });
-}
-
 void CheckNames(const Fleet &fleet, std::vector<Finding> &findings)
 {
     std::map<std::pair<int, std::string>, const GatewayConfig *> seen;
@@ -99,12 +94,13 @@ void CheckDomains(const Fleet &fleet, std::vector<Finding> &findings)
     {
         if (!largest->contains(config.Domain))
         {
-            Add(findings, {config.File,
-                           LineIn(config, "domain"),
-                           {config.Node},
-                           "domain " + std::to_string(config.Domain) + " does not hear domain " +
-                               std::to_string(*largest->begin()) + ", where " + Listed(nodesIn(*largest)) +
-                               (nodesIn(*largest).size() == 1 ? " is" : " are")});
+            Add(findings,
+                {config.File,
+                 LineIn(config, "domain"),
+                 {config.Node},
+                 "domain " + std::to_string(config.Domain) + " does not hear domain " +
+                     std::to_string(*largest->begin()) + ", where " + ListedNames(nodesIn(*largest)) +
+                     (nodesIn(*largest).size() == 1 ? " is" : " are")});
         }
     }
 }
@@ -183,7 +179,7 @@ std::string LineOf(const Finding &finding)
     std::string text = finding.Text;
     if (finding.Nodes.size() > 1)
     {
-        text += " (" + Listed(finding.Nodes) + ")";
+        text += " (" + ListedNames(finding.Nodes) + ")";
     }
     return ConfigError(finding.File, finding.Line, (finding.IsProblem ? "" : "note: ") + text).what();
 }

@@ -73,7 +73,8 @@ FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &opt
     RabitLog::SetLevel(options.Verbose ? RabitLogLevel::Warning : RabitLogLevel::Error);
     try
     {
-        auto gateway = std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport), _workspace);
+        auto gateway =
+            std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport), _workspace);
         _explorer = &gateway->Explorer();
         _reactor.AddManager(std::move(gateway));
     }
@@ -138,7 +139,7 @@ void FleetSession::WaitForEverybody(const std::function<bool()> &isWhole)
 {
     const auto ends = [&] { return Underway().empty() && IsAnybodyThere() && isWhole(); };
     const double least = _announcements ? TwoAnnouncements : Everybody;
-    WaitUntil(_options.IsWaitGiven ? std::min(least, _options.Wait) : least, [] { return false; });
+    WaitUntil(_options.IsWaitGiven ? std::min(least, _options.Wait) : least);
     if (WaitUntil(_options.Wait, ends) || _options.IsWaitGiven)
     {
         return;
@@ -200,8 +201,7 @@ bool FleetSession::TellOfUnderway() const
     }
     Output::Talk(std::to_string(names.size()) +
                  (names.size() == 1 ? " participant is" : " participants are") +
-                 " still being authenticated, or not let in: " +
-                 ListedNames(names, [](const std::string &name) { return name; }) +
+                 " still being authenticated, or not let in: " + ListedNames(names) +
                  "; ask again, or give a longer --wait");
     return true;
 }
@@ -271,18 +271,38 @@ void FleetSession::TellOfKeys()
     }
 }
 
+bool FleetSession::IsTwice() const
+{
+    const auto problems = Fleet().problems;
+    return std::any_of(problems.begin(), problems.end(),
+                       [this](const Gateway::Problem &problem)
+                       { return problem.subject == "node " + _config.Node; });
+}
+
+void FleetSession::TellProblems() const
+{
+    for (const Gateway::Problem &problem : Fleet().problems)
+    {
+        Output::Talk(problem.subject + ": " + problem.reason);
+    }
+}
+
 int FleetSession::NobodyThere()
 {
     Output::Talk("nobody was heard in domain " + std::to_string(_config.Domain) + " over " +
                  _config.Transport +
                  "; `rabit doctor` finds the reason (--domain, --interface, --wait; "
                  "docs/how_to/connect.md)");
-    for (const Gateway::Problem &problem : Fleet().problems)
-    {
-        Output::Talk(problem.subject + ": " + problem.reason);
-    }
+    TellProblems();
     TellOfKeys();
     return NoNetwork;
+}
+
+const FleetSession::Node *FindNode(const std::vector<FleetSession::Node> &nodes, const std::string &node)
+{
+    const auto found = std::find_if(nodes.begin(), nodes.end(),
+                                    [&node](const FleetSession::Node &one) { return one.Name == node; });
+    return found == nodes.end() ? nullptr : &*found;
 }
 
 }  // namespace Rabit::Tool

@@ -52,7 +52,8 @@ public:
 
     static constexpr double Forever = 1e8;
     // Waits until `holds` returns true, for at most `seconds` from the start of the session.
-    bool WaitUntil(double seconds, const std::function<bool()> &holds);
+    bool WaitUntil(
+        double seconds, const std::function<bool()> &holds = [] { return false; });
     // Waits until `holds` returns true, for Patience() at most, but not for announcements that cannot come
     // any more (Offers::AreAllThere). Returns the last result of `holds`. `pattern`: the nodes whose
     // announcements matter.
@@ -89,6 +90,10 @@ public:
     double Seconds() const;
     // True if a node was heard.
     bool IsAnybodyThere() const { return !_explorer->Nodes().empty(); }
+    // True if another live node has the name of this one.
+    bool IsTwice() const;
+    // Reports all problems of the gateway.
+    void TellProblems() const;
     // Reports that no node was heard, with known reasons. Listens 2.2 s more for fleets with keys. Returns
     // the exit code.
     int NobodyThere();
@@ -113,5 +118,7 @@ private:
 
 // The error line for a name that a node has.
 std::string NameIsTaken(const std::string &name);
+// The node; null if it is not known.
+const FleetSession::Node *FindNode(const std::vector<FleetSession::Node> &nodes, const std::string &node);
 
 }  // namespace Rabit::Tool

@@ -1,16 +1,10 @@
 // rabit foxglove: shows the messages of the network live in Foxglove.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetFollower.h"
 #include "FleetSession.h"
-#include "Output.h"
 #include "live/LiveServer.h"
 #include "live/LiveTaps.h"
 
@@ -72,7 +66,7 @@ int Run(const Options &options, Wakeup &wakeup)
     config.Tool->AsksOf = FleetFollower::NodesOf(options.What);
     LiveServer server(SettingsOf(options));
     const std::string url = UrlOf(server.Endpoint());
-    if (options.Common.Json ? !Output::Object({{"url", url}}) : !Output::Line(url))
+    if (!Output::ObjectOrLine(options.Common.Json, {{"url", url}}, url))
     {
         return Good;
     }
@@ -90,7 +84,7 @@ int Run(const Options &options, Wakeup &wakeup)
             lonely = true;
             static_cast<void>(session.NobodyThere());
         }
-        session.WaitUntil(session.Seconds() + 0.1, [] { return false; });
+        session.WaitUntil(session.Seconds() + 0.1);
     }
     const LiveServer::Counters counters = server.Count();
     if (counters.Dropped > 0)
@@ -105,9 +99,9 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command =
-        app.add_subcommand("foxglove", "What is on the network, live in Foxglove or Lichtblick");
+    const auto [command, options] =
+        AddCommand<Options>(app, chosen, "foxglove", "What is on the network, live in Foxglove or Lichtblick",
+                            &Run, &CheckListen);
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any; without: all messages");
     AddCommonOptions(*command, options->Common, 5.0);
     command->add_option("--except", options->Except, "Messages to leave out, as */CameraView");
@@ -124,12 +118,6 @@ void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
                         "A site whose pages may look, besides Foxglove's, Lichtblick's and this machine's");
     AddExamples(*command, {"rabit foxglove", "rabit foxglove 'uav*/Pose' --domain 7",
                            "rabit foxglove --except '*/CameraView' --port 8766"});
-    command->callback(
-        [options, &chosen]
-        {
-            CheckListen(*options);
-            chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); };
-        });
 }
 
 }  // namespace Rabit::Tool

@@ -1,20 +1,13 @@
 // rabit info: the contents of recordings.
 #include <rabit/base/UtcText.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
-#include <cstdio>
 #include <cstdlib>
 #include <ctime>
 #include <map>
-#include <memory>
 #include <tuple>
 
 #include "Command.h"
-#include "CommonOptions.h"
-#include "Output.h"
 #include "PlayedFiles.h"
 #include "SafeText.h"
 #include "Table.h"
@@ -26,7 +19,6 @@ namespace Rabit::Tool
 namespace
 {
 
-using Json = nlohmann::ordered_json;
 using Mcap::Contents;
 
 struct Options
@@ -53,7 +45,7 @@ std::string MergeText(const Mcap::TextMap &merge)
     const bool isKnown = !bound.empty() && bound.find_first_not_of("0123456789") == std::string::npos;
     return Mcap::ValueOf(merge, "lives") + " recordings of " + Mcap::ValueOf(merge, "files") +
            " files by the clock of " + Mcap::ValueOf(merge, "time_line") +
-           (isKnown ? Formatted(", wrong by %.2f ms at most", 1e-6 * std::strtod(bound.c_str(), nullptr))
+           (isKnown ? ", wrong by " + NumberText(1e-6 * std::strtod(bound.c_str(), nullptr), 2, " ms at most")
                     : ", how wrong is not known");
 }
 
@@ -127,7 +119,7 @@ std::string RateOf(const Topic &topic, Mcap::ByteSource &source, const Contents 
         span ? 1e-9 * static_cast<double>(span->second - span->first) : SecondsOf(contents);
     const std::uint64_t periods = topic.Messages - (span && topic.Messages > 0 ? 1 : 0);
     return topic.Messages < 2 || seconds <= 0 ? "-"
-                                              : Formatted("%.2f Hz", static_cast<double>(periods) / seconds);
+                                              : NumberText(static_cast<double>(periods) / seconds, 2, " Hz");
 }
 
 bool ShowText(const std::string &file, Mcap::ByteSource &source, const Contents &contents)
@@ -136,7 +128,7 @@ bool ShowText(const std::string &file, Mcap::ByteSource &source, const Contents 
     const Mcap::TextMap node = MetadataOf(contents, "rabit.node");
     std::vector<std::vector<std::string>> head;
     head.push_back({"file", SafeText(file)});
-    head.push_back({"size", Formatted("%.3f MB", 1e-6 * static_cast<double>(source.Size()))});
+    head.push_back({"size", NumberText(1e-6 * static_cast<double>(source.Size()), 3, " MB")});
     if (!node.empty())
     {
         std::string text = Mcap::ValueOf(node, "node");
@@ -153,7 +145,7 @@ bool ShowText(const std::string &file, Mcap::ByteSource &source, const Contents 
     if (contents.Statistics.MessageCount > 0)
     {
         head.push_back({"begins", DateOf(contents.Statistics.StartTime)});
-        head.push_back({"lasts", Formatted("%.1f s", seconds)});
+        head.push_back({"lasts", NumberText(seconds, 1, " s")});
     }
     head.push_back({"messages", std::to_string(contents.Statistics.MessageCount) + " in " +
                                     std::to_string(contents.Chunks.size()) + " chunks"});
@@ -184,12 +176,9 @@ bool ShowText(const std::string &file, Mcap::ByteSource &source, const Contents 
             table.back().push_back(SafeText(topic.Life));
         }
     }
-    for (std::string &line : TableLines(table))
-    {
-        lines.push_back(std::move(line));
-    }
-    return std::all_of(lines.begin(), lines.end(),
-                       [](const std::string &line) { return Output::Line(line); });
+    const std::vector<std::string> rows = TableLines(table);
+    lines.insert(lines.end(), rows.begin(), rows.end());
+    return Output::Lines(lines);
 }
 
 int Run(const Options &options)
@@ -218,14 +207,12 @@ int Run(const Options &options)
 
 void AddInfoCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("info", "What recordings hold");
+    const auto [command, options] = AddCommand<Options>(app, chosen, "info", "What recordings hold", &Run);
     command->add_option("FILE", options->Files, "Recordings (MCAP)")->required();
     command->add_flag("--scan", options->Scan, "Read all of it, whatever its index says");
     command->add_flag("--json", options->Json, "One object a line");
     AddExamples(*command,
                 {"rabit info flight.mcap", "rabit info *.mcap --json", "rabit info flight.mcap --scan"});
-    command->callback([options, &chosen] { chosen.RunToEnd = [options] { return Run(*options); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -2,27 +2,21 @@
 #include <rabit/base/UtcText.h>
 #include <rabit/dynamic/DynamicType.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
 
 #include "Command.h"
-#include "CommonOptions.h"
-#include "Output.h"
+#include "NewFile.h"
 #include "PlayedFiles.h"
 #include "SafeText.h"
 #include "Table.h"
 #include "TimeText.h"
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
-#include "recording/FolderDisk.h"
 #include "recording/mcap/FileSource.h"
 #include "recording/mcap/MessageCursor.h"
 #include "recording/merge/AgePlot.h"
@@ -34,7 +28,6 @@ namespace Rabit::Tool
 namespace
 {
 
-using Json = nlohmann::ordered_json;
 using Merge::AgeHistory;
 using Merge::KnowerLife;
 using Merge::Knowledge;
@@ -68,10 +61,7 @@ public:
         {
             throw std::runtime_error(NoRecording(options.File));
         }
-        for (const std::string &problem : Contents.Problems)
-        {
-            Output::Talk(problem);
-        }
+        Output::Talk(Contents.Problems);
         for (const KnownStream &stream : Known.Streams)
         {
             const bool isOwn = stream.Node == Known.Lives[stream.Life].Node;
@@ -122,7 +112,7 @@ public:
         const auto listed = [](const std::set<std::string> &names)
         {
             const std::vector<std::string> list(names.begin(), names.end());
-            return list.empty() ? "nothing" : ListedNames(list, [](const std::string &name) { return name; });
+            return list.empty() ? "nothing" : ListedNames(list);
         };
         const bool isThere =
             std::any_of(knowers.begin(), knowers.end(),
@@ -197,13 +187,13 @@ bool Show(const Options &options, const Asked &asked, const KnownStream &stream,
              {"value", decoder.Value(stream, value)}});
     }
     const std::string bound = value.UncertainBy
-                                  ? Formatted("wrong by %.4f s at most", SecondsOf(*value.UncertainBy))
+                                  ? "wrong by " + NumberText(SecondsOf(*value.UncertainBy), 4, " s at most")
                                   : std::string("how wrong is not known");
     return Output::Line(
         SafeText(knower.Node + asked.LifeText(knower.Node, knower.Number) + " knew " + stream.Node + "/" +
                  stream.Message + asked.LifeText(stream.Node, value.Incarnation, "")) +
-        "  age " + Formatted("%.4f s", age) + " (" + bound + ")  came " +
-        Formatted("%.4f s", SecondsOf(at - value.ReceivedAt)) + " before  " + decoder.Text(stream, value));
+        "  age " + NumberText(age, 4, " s") + " (" + bound + ")  came " +
+        NumberText(SecondsOf(at - value.ReceivedAt), 4, " s") + " before  " + decoder.Text(stream, value));
 }
 
 std::string UtcOf(Moment moment)
@@ -245,10 +235,7 @@ int ShowMoment(const Options &options, Asked &asked)
             return Good;
         }
     }
-    for (const std::string &problem : problems)
-    {
-        Output::Talk(problem);
-    }
+    Output::Talk(problems);
     if (!isKnown)
     {
         Output::Talk(!alive.empty()
@@ -315,26 +302,24 @@ void ShowAges(const Options &options, const Asked &asked, const std::vector<AgeH
         table.push_back(
             {SafeText(knower.Node + asked.LifeText(knower.Node, knower.Number)),
              SafeText(stream.Node + "/" + stream.Message), std::to_string(ages.Values()),
-             Formatted("%.3f s", SecondsOf(ages.Percentile(0.5))),
-             Formatted("%.3f s", SecondsOf(ages.Percentile(0.9))),
-             Formatted("%.3f s", SecondsOf(ages.Percentile(0.99))),
-             Formatted("%.3f s", SecondsOf(ages.Oldest())),
-             Formatted("%.1f s", ages.Values() == 0 ? 0.0 : SecondsOf(ages.OldestAt() - asked.Begin()))});
+             NumberText(SecondsOf(ages.Percentile(0.5)), 3, " s"),
+             NumberText(SecondsOf(ages.Percentile(0.9)), 3, " s"),
+             NumberText(SecondsOf(ages.Percentile(0.99)), 3, " s"),
+             NumberText(SecondsOf(ages.Oldest()), 3, " s"),
+             NumberText(ages.Values() == 0 ? 0.0 : SecondsOf(ages.OldestAt() - asked.Begin()), 1, " s")});
     }
-    for (const std::string &line : options.Json ? std::vector<std::string>() : TableLines(table))
-    {
-        Output::Line(line);
-    }
+    Output::Lines(options.Json ? std::vector<std::string>() : TableLines(table));
 }
 
 std::string SvgOf(const Options &options, const Asked &asked, const std::vector<AgeHistory> &histories)
 {
     Merge::AgePlot plot;
     plot.Title = "Age of what nodes knew of each other";
-    plot.Note = std::filesystem::path(options.File).filename().string() + ", from " + UtcOf(asked.Begin()) +
-                (asked.Known.WorstBound ? Formatted(", times are wrong by %.2f ms at most",
-                                                    1e3 * SecondsOf(*asked.Known.WorstBound))
-                                        : "");
+    plot.Note =
+        std::filesystem::path(options.File).filename().string() + ", from " + UtcOf(asked.Begin()) +
+        (asked.Known.WorstBound ? ", times are wrong by " +
+                                      NumberText(1e3 * SecondsOf(*asked.Known.WorstBound), 2, " ms at most")
+                                : "");
     plot.Begin = asked.Begin();
     plot.End = asked.End();
     // Lives of one node share a panel: they do not overlap.
@@ -353,19 +338,10 @@ std::string SvgOf(const Options &options, const Asked &asked, const std::vector<
     return plot.ToSvg();
 }
 
-bool Write(const std::string &path, const std::string &text)
+void Write(const std::string &path, const std::string &text)
 {
-    const std::filesystem::path target = path;
-    FolderDisk disk(target.has_parent_path() ? target.parent_path().string() : ".");
-    std::string reason;
-    const auto file = disk.Create(target.filename().string(), reason);
-    if (!file || !file->Write({reinterpret_cast<const std::uint8_t *>(text.data()), text.size()}) ||
-        !file->Sync())
-    {
-        Output::Talk(reason.empty() ? path + ": the disk takes no more" : reason);
-        return false;
-    }
-    return true;
+    NewFile file(path);
+    file.Finish(file.Sink().Write({reinterpret_cast<const std::uint8_t *>(text.data()), text.size()}));
 }
 
 int Run(const Options &options)
@@ -381,21 +357,21 @@ int Run(const Options &options)
     }
     std::vector<std::string> problems;
     const std::vector<AgeHistory> histories = ReadHistories(asked, problems);
-    for (const std::string &problem : problems)
-    {
-        Output::Talk(problem);
-    }
+    Output::Talk(problems);
     ShowAges(options, asked, histories);
-    const bool isWritten = options.Plot.empty() || Write(options.Plot, SvgOf(options, asked, histories));
-    return isWritten && problems.empty() && asked.IsGood() ? Good : ProblemFound;
+    if (!options.Plot.empty())
+    {
+        Write(options.Plot, SvgOf(options, asked, histories));
+    }
+    return problems.empty() && asked.IsGood() ? Good : ProblemFound;
 }
 
 }  // namespace
 
 void AddKnewCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("knew", "What nodes knew of each other, and how old it was");
+    const auto [command, options] =
+        AddCommand<Options>(app, chosen, "knew", "What nodes knew of each other, and how old it was", &Run);
     command->add_option("FILE", options->File, "A merged recording, or that of one node")->required();
     command->add_option("NODE", options->Knower, "Who knew; *, ? stand for any (default: all)");
     command->add_option("MESSAGE", options->What,
@@ -409,7 +385,6 @@ void AddKnewCommand(CLI::App &app, Chosen &chosen)
     command->add_flag("--json", options->Json, "One object a line");
     AddExamples(*command, {"rabit knew flight.mcap", "rabit knew flight.mcap uav2 uav1/Pose --at 61.5",
                            "rabit knew flight.mcap --plot ages.svg"});
-    command->callback([options, &chosen] { chosen.RunToEnd = [options] { return Run(*options); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -1,17 +1,11 @@
 // rabit log: the log of a node, as it is written.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
 #include "LogText.h"
 #include "OneNode.h"
-#include "Output.h"
 
 namespace Rabit::Tool
 {
@@ -45,7 +39,7 @@ bool Show(const std::string &node, const LogText &log, bool json)
     {
         const LogLine parts = LogLineOf(line);
         const bool isRead =
-            json ? Output::Object(nlohmann::ordered_json{
+            json ? Output::Object(Json{
                        {"node", node}, {"time", parts.Time}, {"level", parts.Level}, {"text", parts.Text}})
                  : Output::Line(line);
         if (!isRead)
@@ -159,16 +153,13 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddLogCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("log", "The log of a node");
+    const auto [command, options] = AddCommand<Options>(app, chosen, "log", "The log of a node", &Run);
     command->add_option("NODE", options->Node, "As uav1")->required();
     AddCommonOptions(*command, options->Common, 5.0);
     command->add_option("-n,--lines", options->Lines, "Number of last lines (default: 20)")
         ->check(CLI::Range(0, 1000));
     command->add_flag("-f,--follow", options->Follow, "Show further lines as they come, until Ctrl-C");
     AddExamples(*command, {"rabit log uav1", "rabit log uav1 -f -n 100", "rabit log uav1 --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -1,20 +1,14 @@
 // rabit merge: the recordings of several nodes on one time line.
 #include <rabit/RabitVersion.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <array>
-#include <filesystem>
 #include <memory>
 
 #include "Command.h"
-#include "CommonOptions.h"
-#include "Output.h"
+#include "NewFile.h"
 #include "SafeText.h"
 #include "Table.h"
 #include "Wakeup.h"
-#include "recording/FolderDisk.h"
 #include "recording/mcap/FileSource.h"
 #include "recording/merge/Merger.h"
 
@@ -23,7 +17,6 @@ namespace Rabit::Tool
 namespace
 {
 
-using Json = nlohmann::ordered_json;
 using Merge::Lives;
 using Merge::Merged;
 using Merge::MergePlan;
@@ -40,7 +33,7 @@ struct Options
 
 std::string Seconds(Moment time)
 {
-    return Formatted("%.1f s", 1e-9 * static_cast<double>(time));
+    return NumberText(1e-9 * static_cast<double>(time), 1, " s");
 }
 
 std::string Bound(std::optional<Moment> bound)
@@ -50,8 +43,8 @@ std::string Bound(std::optional<Moment> bound)
         return "not known";
     }
     const double milliseconds = 1e-6 * static_cast<double>(*bound);
-    return milliseconds < 10000 ? Formatted("%.2f ms", milliseconds)
-                                : Formatted("%.1f s", 1e-3 * milliseconds);
+    return milliseconds < 10000 ? NumberText(milliseconds, 2, " ms")
+                                : NumberText(1e-3 * milliseconds, 1, " s");
 }
 
 // Returns the nodes between the two clocks; empty if they are related directly.
@@ -115,10 +108,7 @@ void ShowText(const Options &options, const Lives &lives, const MergePlan &plan,
     {
         messages += count;
     }
-    for (const std::string &line : TableLines(table))
-    {
-        Output::Line(line);
-    }
+    Output::Lines(TableLines(table));
     const auto worst = plan.WorstBound();
     Output::Line(SafeText(options.To) + ": " + std::to_string(messages) + " messages (and " +
                  std::to_string(merged.TimeLines) + " about the time line) by the clock of " +
@@ -169,10 +159,7 @@ void Warn(const Lives &lives, const MergePlan &plan, const Merged &merged)
                          "anything");
         }
     }
-    for (const std::string &problem : merged.Problems)
-    {
-        Output::Talk(problem);
-    }
+    Output::Talk(merged.Problems);
     if (merged.Lost > 0)
     {
         Output::Talk(std::to_string(merged.Lost) + " messages are of no channel, and were left out");
@@ -184,10 +171,7 @@ int Run(const Options &options, Wakeup &wakeup)
     const Merge::OpenFile open = [](const std::string &path)
     { return std::make_unique<Mcap::FileSource>(path); };
     const Lives lives = Merge::ReadLives(open, options.Files);
-    for (const std::string &remark : lives.Remarks)
-    {
-        Output::Talk(remark);
-    }
+    Output::Talk(lives.Remarks);
     if (!lives.Problem.empty())
     {
         Output::Talk(lives.Problem);
@@ -202,25 +186,11 @@ int Run(const Options &options, Wakeup &wakeup)
                           : "; --wall-clock takes it by its wall clock, which may be wrong by anything"));
         return ProblemFound;
     }
-    const std::filesystem::path target = options.To;
-    FolderDisk disk(target.has_parent_path() ? target.parent_path().string() : ".");
-    std::string reason;
-    const auto file = disk.Create(target.filename().string(), reason);
-    if (!file)
-    {
-        Output::Talk(reason);
-        return ProblemFound;
-    }
-    Mcap::McapWriter writer(*file, {"rabit " RABIT_VERSION_STRING, "rabit", true});
+    NewFile file(options.To);
+    Mcap::McapWriter writer(file.Sink(), {"rabit " RABIT_VERSION_STRING, "rabit", true});
     const Merged merged =
         Merge::Merger(open, lives, plan, writer).Run([&wakeup] { return wakeup.IsInterrupted(); });
-    if (!merged.IsWritten || !file->Sync())
-    {
-        Output::Talk(options.To + (merged.WasStopped ? ": was not finished, and is removed"
-                                                     : ": the disk takes no more; it is removed"));
-        disk.Remove(target.filename().string());
-        return ProblemFound;
-    }
+    file.Finish(merged.IsWritten, merged.WasStopped);
     Warn(lives, plan, merged);
     (options.Json ? ShowJson : ShowText)(options, lives, plan, merged);
     return merged.Problems.empty() && merged.Lost == 0 ? Good : ProblemFound;
@@ -230,9 +200,8 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddMergeCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command =
-        app.add_subcommand("merge", "Recordings of several nodes, on one time line in one file");
+    const auto [command, options] = AddCommand<Options>(
+        app, chosen, "merge", "Recordings of several nodes, on one time line in one file", &Run);
     command->add_option("OUT", options->To, "The file to be made; none is overwritten")->required();
     command->add_option("FILE", options->Files, "Recordings (MCAP), which stay as they are")->required();
     command->add_option("--reference", options->Wishes.Reference,
@@ -243,8 +212,6 @@ void AddMergeCommand(CLI::App &app, Chosen &chosen)
     AddExamples(*command, {"rabit merge flight.mcap ground_*.mcap uav?_*.mcap",
                            "rabit merge flight.mcap *.mcap --reference ground",
                            "rabit merge flight.mcap *.mcap --wall-clock --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -1,6 +1,5 @@
 // rabit messages: all messages that nodes publish.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <boost/algorithm/string/join.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -9,13 +8,9 @@
 #include <memory>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
-#include "JsonNumber.h"
 #include "Meter.h"
-#include "MeterCommand.h"
 #include "Offers.h"
-#include "Output.h"
 #include "SafeText.h"
 #include "Samples.h"
 #include "Table.h"
@@ -24,8 +19,6 @@ namespace Rabit::Tool
 {
 namespace
 {
-
-using Json = nlohmann::ordered_json;
 
 struct Options
 {
@@ -52,7 +45,7 @@ std::map<std::string, double> RatesOf(const std::vector<Offers::Message> &messag
     const double end = session.Seconds() + seconds;
     while (!wakeup.IsInterrupted() && session.Seconds() < end)
     {
-        session.WaitUntil(std::min(end, session.Seconds() + look), [] { return false; });
+        session.WaitUntil(std::min(end, session.Seconds() + look));
         for (const auto &[name, samples] : all)
         {
             for (const Sample &sample : samples->Take(session.Seconds()))
@@ -93,16 +86,6 @@ Subscribers SubscribersOf(const std::vector<Offers::Message> &messages, FleetSes
     return session.SubscribersOf(names);
 }
 
-std::string Joined(const std::vector<std::string> &words)
-{
-    std::string text;
-    for (const std::string &word : words)
-    {
-        text += (text.empty() ? "" : " ") + word;
-    }
-    return text;
-}
-
 std::string TextOf(const FleetExplorer::Subscribers &subscribers)
 {
     std::vector<std::string> words = subscribers.Nodes;
@@ -110,7 +93,7 @@ std::string TextOf(const FleetExplorer::Subscribers &subscribers)
     {
         words.push_back("+" + std::to_string(subscribers.Others) + " no node");
     }
-    return words.empty() ? "-" : Joined(words);
+    return words.empty() ? "-" : boost::algorithm::join(words, " ");
 }
 
 int Run(const Options &all, Wakeup &wakeup)
@@ -149,7 +132,7 @@ int Run(const Options &all, Wakeup &wakeup)
                                      {"publishers", message.Publishers},
                                      {"subscribers", subscribers[message.Name].Nodes},
                                      {"other_subscribers", subscribers[message.Name].Others},
-                                     {"rate_hz", JsonNumber(RateOf(message, rates))}}))
+                                     {"rate_hz", RateOf(message, rates)}}))
             {
                 return Good;
             }
@@ -160,24 +143,15 @@ int Run(const Options &all, Wakeup &wakeup)
         {
             rows.back().push_back(NumberText(RateOf(message, rates), 2, " Hz"));
         }
-        rows.back().push_back(Joined(message.Publishers));
+        rows.back().push_back(boost::algorithm::join(message.Publishers, " "));
         rows.back().push_back(TextOf(subscribers[message.Name]));
     }
-    if (!options.Json)
+    if (!options.Json && !Output::Lines(TableLines(rows)))
     {
-        for (const std::string &line : TableLines(rows))
-        {
-            if (!Output::Line(line))
-            {
-                return Good;
-            }
-        }
+        return Good;
     }
     const std::vector<std::string> differences = Offers::Differences(nodes);
-    for (const std::string &line : differences)
-    {
-        Output::Talk(line);
-    }
+    Output::Talk(differences);
     if (!Offers::AreComplete(nodes))
     {
         Output::Talk("not all nodes have announced themselves yet; ask again in 2 s");
@@ -190,17 +164,14 @@ int Run(const Options &all, Wakeup &wakeup)
 
 void AddMessagesCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command =
-        app.add_subcommand("messages", "All messages, their types, who publishes and who reads them");
+    const auto [command, options] = AddCommand<Options>(
+        app, chosen, "messages", "All messages, their types, who publishes and who reads them", &Run);
     AddCommonOptions(*command, options->Common, 1.8);
     command
         ->add_option("--for", options->For,
                      "Listen to all of them for so many seconds, and tell how often they come")
         ->check(CLI::Range(0.1, 86400.0));
     AddExamples(*command, {"rabit messages --domain 7", "rabit messages --for 3", "rabit messages --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

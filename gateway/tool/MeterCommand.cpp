@@ -1,17 +1,15 @@
-#include "MeterCommand.h"
-
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
+// rabit hz, rabit bytes, rabit age: what values of a message measure, a line for each node.
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
 #include <map>
-#include <memory>
-#include <utility>
 
-#include "Output.h"
+#include "Command.h"
+#include "Meter.h"
 #include "Samples.h"
 #include "Table.h"
+#include "TimeText.h"
+#include "air/AirCost.h"
 
 namespace Rabit::Tool
 {
@@ -25,51 +23,88 @@ struct Options
     double For = 5.0;
 };
 
-int Measure(const MeterCommand &what, const Options &options, FleetSession &session, Samples &samples,
+// The values that came from one node.
+struct Measured
+{
+    Meter Values;
+    double Uncertainty = 0.0;  // of the ages, in seconds
+};
+
+struct Column
+{
+    const char *Title;
+    const char *Key;  // of the JSON object
+    double (*Value)(const Measured &);
+    std::string (*Text)(double);
+};
+
+// The columns behind the name of the node and the number of values.
+using Columns = std::vector<Column>;
+
+// Returns the largest error of an age: beats relate the two clocks, and half of a round trip is taken as the
+// one-way delay, which may be any part of it.
+double Uncertainty(const std::string &node, const Gateway::Fleet &fleet)
+{
+    for (const Gateway::NodeStatus &status : fleet.nodes)
+    {
+        if (status.node == node)
+        {
+            return status.round_trip_s / 2.0;
+        }
+    }
+    return std::numeric_limits<double>::quiet_NaN();
+}
+
+// Returns the bytes of IP packets of one sample, to one destination.
+double OnAir(const Meter &meter)
+{
+    const double body = meter.MeanBytes() - static_cast<double>(AirCost::Encapsulation);
+    return static_cast<double>(
+        AirCost(GatewayConfig().MaxDatagram).Of(static_cast<std::size_t>(std::lround(std::max(0.0, body)))));
+}
+
+int Measure(const Columns &columns, const Options &options, FleetSession &session, Samples &samples,
             Wakeup &wakeup)
 {
-    std::map<std::string, Meter> meters;
+    std::map<std::string, Measured> nodes;
     const double end = session.Seconds() + options.For;
     while (!wakeup.IsInterrupted() && session.Seconds() < end)
     {
         for (const Sample &sample : samples.Take(end))
         {
-            meters[sample.Node].Add(sample.At, sample.Bytes.size(), sample.Age);
+            nodes[sample.Node].Values.Add(sample.At, sample.Bytes.size(), sample.Age);
         }
     }
-    if (meters.empty())
+    if (nodes.empty())
     {
-        for (const Gateway::Problem &problem : session.Fleet().problems)
-        {
-            Output::Talk(problem.subject + ": " + problem.reason);
-        }
+        session.TellProblems();
         Output::Talk("nothing has come");
         return ProblemFound;
     }
-    std::vector<std::vector<std::string>> rows{{"NODE"}};
-    rows[0].insert(rows[0].end(), what.Columns.begin(), what.Columns.end());
-    for (const auto &[node, meter] : meters)
+    std::vector<std::vector<std::string>> rows{{"NODE", "VALUES"}};
+    for (const Column &column : columns)
     {
-        if (options.Common.Json)
-        {
-            nlohmann::ordered_json object{{"node", node}, {"message", samples.Message()}};
-            what.Members(meter, node, session, object);
-            if (!Output::Object(object))
-            {
-                return Good;
-            }
-            continue;
-        }
-        rows.push_back({node});
-        const std::vector<std::string> cells = what.Cells(meter, node, session);
-        rows.back().insert(rows.back().end(), cells.begin(), cells.end());
+        rows[0].emplace_back(column.Title);
     }
-    for (const std::string &line : options.Common.Json ? std::vector<std::string>() : TableLines(rows))
+    const Gateway::Fleet fleet = session.Fleet();
+    for (auto &[node, measured] : nodes)
     {
-        if (!Output::Line(line))
+        measured.Uncertainty = Uncertainty(node, fleet);
+        Json object{{"node", node}, {"message", samples.Message()}, {"values", measured.Values.Count()}};
+        rows.push_back({node, std::to_string(measured.Values.Count())});
+        for (const Column &column : columns)
+        {
+            object[column.Key] = column.Value(measured);
+            rows.back().push_back(column.Text(column.Value(measured)));
+        }
+        if (options.Common.Json && !Output::Object(object))
         {
             return Good;
         }
+    }
+    if (!options.Common.Json && !Output::Lines(TableLines(rows)))
+    {
+        return Good;
     }
     if (samples.Missed() > 0)
     {
@@ -78,38 +113,75 @@ int Measure(const MeterCommand &what, const Options &options, FleetSession &sess
     return Good;
 }
 
-int Run(const MeterCommand &what, const Options &options, Wakeup &wakeup)
+// Adds a command that listens for --for seconds, or until Ctrl-C, and then prints a line for each node.
+void AddMeterCommand(CLI::App &app, Chosen &chosen, const std::string &name, const std::string &help,
+                     const Columns &columns)
 {
-    return ListenTo(options.Common, options.What, wakeup,
-                    [&](FleetSession &session, Samples &samples)
-                    { return Measure(what, options, session, samples, wakeup); });
-}
-
-}  // namespace
-
-std::string NumberText(double number, int digits, const char *unit)
-{
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*f%s", digits, number, unit);
-    return std::isfinite(number) ? text : "-";
-}
-
-void AddMeterCommand(CLI::App &app, Chosen &chosen, MeterCommand what)
-{
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand(what.Name, what.Help);
+    const auto run = [columns](const Options &given, Wakeup &wakeup)
+    {
+        return ListenTo(given.Common, given.What, wakeup,
+                        [&](FleetSession &session, Samples &samples)
+                        { return Measure(columns, given, session, samples, wakeup); });
+    };
+    const auto [command, options] = AddCommand<Options>(app, chosen, name, help, run);
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any node; Pose: of all nodes")
         ->required();
     AddCommonOptions(*command, options->Common, 5.0);
     command->add_option("--for", options->For, "Seconds to listen")
         ->check(CLI::Range(0.1, 86400.0))
         ->capture_default_str();
-    const std::string line = "rabit " + std::string(what.Name) + " ";
+    const std::string line = "rabit " + name + " ";
     AddExamples(*command,
                 {line + "uav1/Pose", line + "'uav*/Pose' --for 20", line + "Pose --domain 7 --json"});
-    command->callback(
-        [options, &chosen, what = std::move(what)]
-        { chosen.Run = [options, what](Wakeup &wakeup) { return Run(what, *options, wakeup); }; });
+}
+
+std::string Milliseconds(double seconds)
+{
+    return NumberText(1000.0 * seconds, 1, " ms");
+}
+
+std::string Bytes(double bytes)
+{
+    return NumberText(bytes, 0, " B");
+}
+
+}  // namespace
+
+void AddHzCommand(CLI::App &app, Chosen &chosen)
+{
+    AddMeterCommand(
+        app, chosen, "hz", "How often a message comes, and how evenly",
+        {{"RATE", "rate_hz", [](const Measured &node) { return node.Values.Rate(); },
+          [](double rate) { return NumberText(rate, 2, " Hz"); }},
+         {"JITTER", "jitter_s", [](const Measured &node) { return node.Values.Jitter(); }, &Milliseconds},
+         {"SHORTEST", "shortest_s", [](const Measured &node) { return node.Values.ShortestGap(); },
+          &Milliseconds},
+         {"LONGEST", "longest_s", [](const Measured &node) { return node.Values.LongestGap(); },
+          &Milliseconds}});
+}
+
+void AddBytesCommand(CLI::App &app, Chosen &chosen)
+{
+    AddMeterCommand(
+        app, chosen, "bytes",
+        "How large a message is, and what it costs on the air, with all headers, for each destination",
+        {{"SIZE", "bytes", [](const Measured &node) { return node.Values.MeanBytes(); }, &Bytes},
+         {"ON THE AIR", "air_bytes", [](const Measured &node) { return OnAir(node.Values); }, &Bytes},
+         {"EACH SECOND", "air_bytes_per_s",
+          [](const Measured &node) { return OnAir(node.Values) * node.Values.Rate(); },
+          [](double rate) { return NumberText(rate, 0, " B/s"); }}});
+}
+
+void AddAgeCommand(CLI::App &app, Chosen &chosen)
+{
+    AddMeterCommand(
+        app, chosen, "age", "How old values are when they come, and how sure that is",
+        {{"50 %", "p50_s", [](const Measured &node) { return node.Values.Age(0.5); }, &DurationText},
+         {"90 %", "p90_s", [](const Measured &node) { return node.Values.Age(0.9); }, &DurationText},
+         {"99 %", "p99_s", [](const Measured &node) { return node.Values.Age(0.99); }, &DurationText},
+         {"OLDEST", "oldest_s", [](const Measured &node) { return node.Values.Age(1.0); }, &DurationText},
+         {"UNCERTAIN BY", "uncertainty_s", [](const Measured &node) { return node.Uncertainty; },
+          &DurationText}});
 }
 
 }  // namespace Rabit::Tool

@@ -1,19 +1,11 @@
 // rabit nodes: the nodes of the fleet.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <memory>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
-#include "JsonNumber.h"
 #include "NodeProblems.h"
 #include "Offers.h"
-#include "Output.h"
 #include "SafeText.h"
 #include "Table.h"
 
@@ -22,27 +14,11 @@ namespace Rabit::Tool
 namespace
 {
 
-using Json = nlohmann::ordered_json;
-
 struct Options
 {
     CommonOptions Common;
     bool Watch = false;
 };
-
-std::string Milliseconds(double seconds)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f ms", 1000.0 * seconds);
-    return std::isfinite(seconds) ? text : "-";
-}
-
-std::string Rate(double bytesPerSecond)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.0f B/s", bytesPerSecond);
-    return bytesPerSecond > 0.0 ? text : "-";
-}
 
 template <typename Items, typename NameOf>
 std::string Names(const Items &items, NameOf nameOf)
@@ -53,13 +29,6 @@ std::string Names(const Items &items, NameOf nameOf)
         text += (text.empty() ? "" : " ") + SafeText(nameOf(item));
     }
     return text.empty() ? "-" : text;
-}
-
-const FleetSession::Node *Find(const std::vector<FleetSession::Node> &nodes, const std::string &name)
-{
-    const auto found = std::find_if(nodes.begin(), nodes.end(),
-                                    [&name](const FleetSession::Node &node) { return node.Name == name; });
-    return found == nodes.end() ? nullptr : &*found;
 }
 
 // Returns all problems, in lines.
@@ -116,8 +85,8 @@ Json JsonOf(const Gateway::NodeStatus &status, const FleetSession::Node *node)
     object["reason"] = status.reason;
     object["incarnation"] = std::to_string(status.incarnation);
     object["last_heard_s"] = status.last_heard_s;
-    object["round_trip_s"] = JsonNumber(status.round_trip_s);
-    object["delivery_rate"] = status.delivery_rate > 0.0 ? JsonNumber(status.delivery_rate) : Json(nullptr);
+    object["round_trip_s"] = status.round_trip_s;
+    object["delivery_rate"] = status.delivery_rate > 0.0 ? Json(status.delivery_rate) : Json(nullptr);
     object["publishes"] = Json::array();
     object["accepts"] = Json::array();
     if (node != nullptr && node->Offers)
@@ -150,7 +119,7 @@ bool ShowJson(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node>
     bool good = true;
     for (const Gateway::NodeStatus &status : fleet.nodes)
     {
-        good = good && Output::Object(JsonOf(status, Find(nodes, status.node)));
+        good = good && Output::Object(JsonOf(status, FindNode(nodes, status.node)));
     }
     for (const Gateway::Problem &problem : problems)
     {
@@ -168,21 +137,16 @@ bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node
         {"NODE", "STATE", "HEARD", "ROUND TRIP", "DELIVERY", "PUBLISHES", "ACCEPTS"}};
     for (const Gateway::NodeStatus &status : fleet.nodes)
     {
-        const FleetSession::Node *node = Find(nodes, status.node);
+        const FleetSession::Node *node = FindNode(nodes, status.node);
         const bool known = node != nullptr && node->Offers;
-        char heard[32];
-        std::snprintf(heard, sizeof heard, "%.1f s", status.last_heard_s);
         rows.push_back(
             {SafeText(status.node), std::string(ToString(status.state)) + (status.replay ? " (replay)" : ""),
-             heard, Milliseconds(status.round_trip_s), Rate(status.delivery_rate),
+             NumberText(status.last_heard_s, 1, " s"), NumberText(1000.0 * status.round_trip_s, 1, " ms"),
+             status.delivery_rate > 0.0 ? NumberText(status.delivery_rate, 0, " B/s") : "-",
              known ? Names(node->Offers->publishes, [](const auto &item) { return item.message; }) : "?",
              known ? Names(node->Offers->accepts, [](const auto &item) { return item.queue; }) : "?"});
     }
-    bool good = true;
-    for (const std::string &line : TableLines(rows))
-    {
-        good = good && Output::Line(line);
-    }
+    bool good = Output::Lines(TableLines(rows));
     for (const Gateway::Problem &problem : problems)
     {
         good = good && Output::Line(SafeText("! " + problem.subject + ": " + problem.reason));
@@ -238,7 +202,7 @@ int Run(const Options &options, Wakeup &wakeup)
         {
             return stillRead ? code : Good;
         }
-        session.WaitUntil(second + 1.0, [] { return false; });
+        session.WaitUntil(second + 1.0);
     }
 }
 
@@ -246,13 +210,11 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddNodesCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("nodes", "Who is there, what each has, and what is wrong");
+    const auto [command, options] =
+        AddCommand<Options>(app, chosen, "nodes", "Who is there, what each has, and what is wrong", &Run);
     AddCommonOptions(*command, options->Common, 1.8);
     command->add_flag("--watch", options->Watch, "Show it again each second until Ctrl-C");
     AddExamples(*command, {"rabit nodes --domain 7", "rabit nodes --watch", "rabit nodes --json --wait 5"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

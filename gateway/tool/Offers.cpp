@@ -2,29 +2,18 @@
 
 #include <rabit/idl/NearestWord.h>
 
+#include <boost/algorithm/string/join.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <tuple>
 
+#include "Table.h"
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
 
 namespace Rabit::Tool::Offers
 {
-namespace
-{
-
-std::string Listed(const std::set<std::string> &names)
-{
-    std::string text;
-    for (const std::string &name : names)
-    {
-        text += (text.empty() ? "" : ", ") + name;
-    }
-    return text;
-}
-
-}  // namespace
 
 std::vector<Message> MessagesOf(const std::vector<FleetSession::Node> &nodes)
 {
@@ -90,8 +79,8 @@ std::vector<std::string> Differences(const std::vector<FleetSession::Node> &node
         std::string line = "nodes were built with different definitions of `" + type + "`: ";
         for (const auto &[definition, names] : definitions)
         {
-            line += (definition == definitions.begin()->first ? "" : "; ") + Listed(names) + " with " +
-                    HashText(definition);
+            line += (definition == definitions.begin()->first ? "" : "; ") +
+                    boost::algorithm::join(names, ", ") + " with " + HashText(definition);
         }
         lines.push_back(line);
     }
@@ -119,9 +108,8 @@ bool AreAllThere(const std::vector<FleetSession::Node> &nodes, const std::string
                  bool isEverybodyHeard)
 {
     const auto isLost = [](const FleetSession::Node &node) { return node.State == Gateway::NodeState::LOST; };
-    const auto named = std::find_if(nodes.begin(), nodes.end(),
-                                    [&](const FleetSession::Node &node) { return node.Name == pattern; });
-    if (named != nodes.end() && !isLost(*named))
+    const FleetSession::Node *const named = FindNode(nodes, pattern);
+    if (named != nullptr && !isLost(*named))
     {
         return named->Offers.has_value();
     }
@@ -140,9 +128,7 @@ std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::
     };
     std::vector<std::string> there;
     std::vector<std::string> similar;
-    char within[32];
-    std::snprintf(within, sizeof within, "%.1f", seconds);
-    std::string text = "node `" + name + "` was not heard within " + within + " s";
+    std::string text = "node `" + name + "` was not heard within " + NumberText(seconds, 1, " s");
     for (const FleetSession::Node &node : nodes)
     {
         if (node.State == Gateway::NodeState::LOST)
@@ -161,9 +147,7 @@ std::string NoSuchNode(const std::string &name, const std::vector<FleetSession::
     {
         return text + hint;
     }
-    return text + (there.empty()
-                       ? ""
-                       : "; there: " + ListedNames(there, [](const std::string &one) { return one; }));
+    return text + (there.empty() ? "" : "; there: " + ListedNames(there));
 }
 
 std::string HashText(std::uint64_t definition)

@@ -14,13 +14,6 @@ GatewayConfig ConfigWithoutOffers(const CommonOptions &options)
     return config;
 }
 
-const FleetSession::Node *FindNode(const std::vector<FleetSession::Node> &nodes, const std::string &node)
-{
-    const auto found = std::find_if(nodes.begin(), nodes.end(),
-                                    [&node](const FleetSession::Node &one) { return one.Name == node; });
-    return found == nodes.end() ? nullptr : &*found;
-}
-
 std::optional<FleetExplorer::Answer> Request(FleetSession &session, const std::string &node,
                                              FleetExplorer::Report what, std::uint32_t argument)
 {

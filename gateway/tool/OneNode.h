@@ -24,7 +24,4 @@ int WaitForNode(FleetSession &session, const CommonOptions &options, const std::
 std::optional<FleetExplorer::Answer> Request(FleetSession &session, const std::string &node,
                                              FleetExplorer::Report what, std::uint32_t argument = 0);
 
-// The node; null if it is not known.
-const FleetSession::Node *FindNode(const std::vector<FleetSession::Node> &nodes, const std::string &node);
-
 }  // namespace Rabit::Tool

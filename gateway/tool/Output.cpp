@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
@@ -50,14 +51,32 @@ int Ended(int code)
     return code == Good ? ProblemFound : code;
 }
 
+bool Lines(const std::vector<std::string> &lines)
+{
+    return std::all_of(lines.begin(), lines.end(), Line);
+}
+
 bool Object(const nlohmann::ordered_json &object)
 {
     return Line(JsonText(object));
 }
 
+bool ObjectOrLine(bool json, const nlohmann::ordered_json &object, std::string_view line)
+{
+    return json ? Object(object) : Line(line);
+}
+
 void Talk(std::string_view text)
 {
     std::fprintf(stderr, "rabit: %s\n", SafeText(text).c_str());
+}
+
+void Talk(const std::vector<std::string> &texts)
+{
+    for (const std::string &text : texts)
+    {
+        Talk(text);
+    }
 }
 
 void BeginScreen()

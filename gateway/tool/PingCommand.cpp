@@ -1,30 +1,21 @@
 // rabit ping: round trips to a node.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <chrono>
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
-#include "JsonNumber.h"
 #include "OneNode.h"
-#include "Output.h"
 #include "RoundTrips.h"
+#include "Table.h"
 
 namespace Rabit::Tool
 {
 namespace
 {
 
-using Json = nlohmann::ordered_json;
 using Report = FleetExplorer::Report;
 
 struct Options
@@ -38,43 +29,35 @@ struct Options
 
 std::string Milliseconds(double seconds)
 {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.2f ms", 1000.0 * seconds);
-    return std::isfinite(seconds) ? text : "-";
+    return NumberText(1000.0 * seconds, 2, " ms");
 }
 
 bool ShowOne(const Options &options, std::uint32_t number, std::optional<double> seconds)
 {
-    if (options.Common.Json)
-    {
-        return Output::Object(Json{{"node", options.Node},
-                                   {"number", number},
-                                   {"round_trip_s", seconds ? Json(*seconds) : Json(nullptr)}});
-    }
-    return Output::Line(options.Node + "  " + std::to_string(number) + "  " +
-                        (seconds ? Milliseconds(*seconds) : "no answer"));
+    return Output::ObjectOrLine(options.Common.Json,
+                                Json{{"node", options.Node},
+                                     {"number", number},
+                                     {"round_trip_s", seconds ? Json(*seconds) : Json(nullptr)}},
+                                options.Node + "  " + std::to_string(number) + "  " +
+                                    (seconds ? Milliseconds(*seconds) : "no answer"));
 }
 
 void ShowAll(const Options &options, const RoundTrips &trips)
 {
-    if (options.Common.Json)
-    {
-        Output::Object(Json{{"node", options.Node},
-                            {"sent", trips.Sent()},
-                            {"answered", trips.Came()},
-                            {"loss", JsonNumber(trips.Loss())},
-                            {"min_s", JsonNumber(trips.Percentile(0.0))},
-                            {"p50_s", JsonNumber(trips.Percentile(0.5))},
-                            {"p99_s", JsonNumber(trips.Percentile(0.99))},
-                            {"max_s", JsonNumber(trips.Percentile(1.0))}});
-        return;
-    }
-    char loss[32];
-    std::snprintf(loss, sizeof loss, "%.0f %%", 100.0 * trips.Loss());
-    Output::Line(std::to_string(trips.Came()) + " of " + std::to_string(trips.Sent()) + " answered, loss " +
-                 loss + "; min " + Milliseconds(trips.Percentile(0.0)) + "  p50 " +
-                 Milliseconds(trips.Percentile(0.5)) + "  p99 " + Milliseconds(trips.Percentile(0.99)) +
-                 "  max " + Milliseconds(trips.Percentile(1.0)));
+    Output::ObjectOrLine(
+        options.Common.Json,
+        Json{{"node", options.Node},
+             {"sent", trips.Sent()},
+             {"answered", trips.Came()},
+             {"loss", trips.Loss()},
+             {"min_s", trips.Percentile(0.0)},
+             {"p50_s", trips.Percentile(0.5)},
+             {"p99_s", trips.Percentile(0.99)},
+             {"max_s", trips.Percentile(1.0)}},
+        std::to_string(trips.Came()) + " of " + std::to_string(trips.Sent()) + " answered, loss " +
+            NumberText(100.0 * trips.Loss(), 0, " %") + "; min " + Milliseconds(trips.Percentile(0.0)) +
+            "  p50 " + Milliseconds(trips.Percentile(0.5)) + "  p99 " + Milliseconds(trips.Percentile(0.99)) +
+            "  max " + Milliseconds(trips.Percentile(1.0)));
 }
 
 int Run(const Options &options, Wakeup &wakeup)
@@ -116,7 +99,7 @@ int Run(const Options &options, Wakeup &wakeup)
         stillRead = ShowOne(options, number, seconds);
         if (number < options.Count)
         {
-            session.WaitUntil(begin + options.Every, [] { return false; });
+            session.WaitUntil(begin + options.Every);
         }
     }
     if (stillRead)
@@ -130,8 +113,8 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddPingCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("ping", "Round trips to a node, through its gateway");
+    const auto [command, options] =
+        AddCommand<Options>(app, chosen, "ping", "Round trips to a node, through its gateway", &Run);
     command->add_option("NODE", options->Node, "As uav1")->required();
     AddCommonOptions(*command, options->Common, 5.0);
     command->add_option("-c,--count", options->Count, "Number of round trips (default: until Ctrl-C)")
@@ -141,8 +124,6 @@ void AddPingCommand(CLI::App &app, Chosen &chosen)
     command->add_option("--timeout", options->Timeout, "Seconds to wait for an answer (default: 5)")
         ->check(CLI::Range(0.1, 3600.0));
     AddExamples(*command, {"rabit ping uav1", "rabit ping uav1 -c 10", "rabit ping uav1 -c 60 --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -4,19 +4,13 @@
 #include <rabit/base/NumberIn.h>
 #include <rabit/base/UtcText.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <chrono>
-#include <memory>
 #include <optional>
 #include <set>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
-#include "Output.h"
 #include "PlayedFiles.h"
 #include "Playing.h"
 #include "ReplayFleet.h"
@@ -150,10 +144,7 @@ int Tell(const Options &options, const PlayedFiles &files, const ReplayFleet &fl
 {
     const ReplayFleet::Counts counts = fleet.CountsNow();
     const std::vector<std::string> problems = files.Messages().Problems();
-    for (const std::string &problem : problems)
-    {
-        Output::Talk(problem);
-    }
+    Output::Talk(problems);
     const auto tell = [](const std::string &what, std::uint64_t count)
     {
         if (count > 0)
@@ -196,9 +187,7 @@ void TellOfPlace(const ReplayTimeline::Settings &settings, const ReplayFleet &fl
                                                       : "for " + DurationText(recorded / settings.Rate);
     Output::Talk("plays " + Counted(fleet.Names().size(), "node") + " " + length + ", in domain " +
                  std::to_string(network.Domain) + " on " +
-                 (network.Interfaces.empty()
-                      ? "all interfaces"
-                      : ListedNames(network.Interfaces, [](const std::string &name) { return name; })));
+                 (network.Interfaces.empty() ? "all interfaces" : ListedNames(network.Interfaces)));
 }
 
 int Play(const Options &options, PlayedFiles &files, const Replay::NodeRenames &renames,
@@ -266,10 +255,10 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddPlayCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand(
-        "play",
-        "Recordings, once more to the network, as nodes `replay.NAME`; on loopback unless told otherwise");
+    const auto [command, options] = AddCommand<Options>(
+        app, chosen, "play",
+        "Recordings, once more to the network, as nodes `replay.NAME`; on loopback unless told otherwise",
+        &Run);
     command->add_option("FILE", options->Files, "Recordings (MCAP)")->required();
     AddCommonOptions(*command, options->Common, 2.0);
     // A replay leaves loopback only if the command line says so.
@@ -291,8 +280,6 @@ void AddPlayCommand(CLI::App &app, Chosen &chosen)
     AddExamples(*command, {"rabit play flight.mcap",
                            "rabit play flight.mcap --rate 4 --from 60 --exclude '*/CameraView'",
                            "rabit play uav1_*.mcap --rename uav1=sim1 --loop"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -42,9 +42,7 @@ void CheckQueues(const std::vector<const Mcap::Contents *> &contents,
         {
             throw std::runtime_error(
                 "--queues " + pattern + ": the recording has no message for such a queue" +
-                (there.empty()
-                     ? ", nor for any other"
-                     : "; there: " + ListedNames(there, [](const std::string &name) { return name; })));
+                (there.empty() ? ", nor for any other" : "; there: " + ListedNames(there)));
         }
     }
 }

@@ -3,14 +3,13 @@
 #include <rabit/RabitClock.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
 #include "CommonOptions.h"
 #include "FleetSession.h"
 #include "Output.h"
+#include "Table.h"
 
 namespace Rabit::Tool
 {
@@ -27,9 +26,7 @@ std::chrono::nanoseconds Now()
 
 std::string SecondsText(Replay::Time from, Replay::Time to)
 {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.1f s", 1e-9 * static_cast<double>(to - from));
-    return text.data();
+    return NumberText(1e-9 * static_cast<double>(to - from), 1, " s");
 }
 
 }  // namespace

@@ -2,20 +2,14 @@
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/idl/NearestWord.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
 #include "FleetType.h"
 #include "IdlFiles.h"
 #include "Offers.h"
-#include "Output.h"
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
 #include "names/QosProfileWords.h"
@@ -135,13 +129,6 @@ int Post(const Options &options, const std::string &node, const std::string &nam
         return publications.empty() ? Gateway::PublicationStatus() : publications.front();
     };
     const auto isRead = [&status] { return status().readers > 0; };
-    const auto isTwice = [&session, &node]
-    {
-        const auto problems = session.Fleet().problems;
-        return std::any_of(problems.begin(), problems.end(),
-                           [&node](const Gateway::Problem &problem)
-                           { return problem.subject == "node " + node; });
-    };
     // Waits for a reader before the first post: a single value reaches only nodes that have heard this node.
     session.WaitUntil(options.Common.Wait, isRead);
     const double begin = session.Seconds();
@@ -154,7 +141,7 @@ int Post(const Options &options, const std::string &node, const std::string &nam
         posted->PostMessage();
         ++posts;
         const double next = options.Rate > 0.0 ? begin + static_cast<double>(posts) / options.Rate : end;
-        if (session.WaitUntil(std::min(next, end), isTwice))
+        if (session.WaitUntil(std::min(next, end), [&session] { return session.IsTwice(); }))
         {
             Output::Talk(NameIsTaken(node));
             return ProblemFound;
@@ -162,22 +149,16 @@ int Post(const Options &options, const std::string &node, const std::string &nam
     }
     const bool anybody = isRead();
     const std::uint32_t readers = status().readers;
-    if (options.Common.Json)
-    {
-        Output::Object({{"node", node}, {"message", name}, {"posts", posts}, {"readers", readers}});
-    }
-    else
-    {
-        Output::Line(std::to_string(posts) + (posts == 1 ? " post, " : " posts, ") + std::to_string(readers) +
-                     (readers == 1 ? " reader" : " readers"));
-    }
+    Output::ObjectOrLine(options.Common.Json,
+                         {{"node", node}, {"message", name}, {"posts", posts}, {"readers", readers}},
+                         std::to_string(posts) + (posts == 1 ? " post, " : " posts, ") +
+                             std::to_string(readers) + (readers == 1 ? " reader" : " readers"));
     if (!anybody)
     {
         const auto types = OtherTypes(name, options.Type, session);
-        const auto same = [](const std::string &type) { return type; };
         Output::Talk(types.empty() ? "nobody subscribes to `" + name + "`, or nobody from `" + node + "`"
-                                   : "subscribers of `" + name + "` want " + ListedNames(types, same) +
-                                         ", not `" + options.Type + "`");
+                                   : "subscribers of `" + name + "` want " + ListedNames(types) + ", not `" +
+                                         options.Type + "`");
     }
     return anybody ? Good : ProblemFound;
 }
@@ -215,9 +196,8 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddPostCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command =
-        app.add_subcommand("post", "Posts a message as a node of that name, once or at a rate");
+    const auto [command, options] = AddCommand<Options>(
+        app, chosen, "post", "Posts a message as a node of that name, once or at a rate", &Run);
     command->add_option("MESSAGE", options->What, "As sim1/Pose: node sim1 posts its Pose")->required();
     command->add_option("TYPE", options->Type, "As Uav::Pose")->required();
     command->add_option("JSON", options->Value, "The value; what it leaves out has its default")->required();
@@ -234,8 +214,6 @@ void AddPostCommand(CLI::App &app, Chosen &chosen)
     AddExamples(*command, {R"(rabit post sim1/Pose Uav::Pose '{"altitude_m": 500}')",
                            "rabit post sim1/Pose Uav::Pose '{}' --rate 10 --qos telemetry",
                            "rabit post sim1/Pose Uav::Pose '{}' --idl uav.idl --for 10"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -1,9 +1,6 @@
 // rabit record: records the messages of the network into files.
 #include <rabit/RabitClock.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,10 +16,8 @@
 #include <system_error>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetFollower.h"
 #include "FleetSession.h"
-#include "Output.h"
 #include "names/ByteSize.h"
 #include "names/ListedNames.h"
 #include "recording/FolderDisk.h"
@@ -112,24 +107,18 @@ bool Tell(const Options &options, const RecordingStatus &status)
     if (lost > 0)
     {
         Output::Talk(std::to_string(lost) + (lost == 1 ? " message was" : " messages were") +
-                     " not recorded, of " +
-                     ListedNames(topics, [](const std::string &topic) { return topic; }));
+                     " not recorded, of " + ListedNames(topics));
     }
-    if (options.Common.Json)
-    {
-        Output::Object({{"files", status.Files},
-                        {"last_file", status.LastFile},
-                        {"messages", status.Messages},
-                        {"bytes", status.Bytes},
-                        {"lost", status.Lost}});
-    }
-    else
-    {
-        Output::Line(Counted(status) + ", " +
-                     (status.Files == 1
-                          ? options.Record.Folder + "/" + status.LastFile
-                          : std::to_string(status.Files) + " files in " + options.Record.Folder));
-    }
+    Output::ObjectOrLine(
+        options.Common.Json,
+        {{"files", status.Files},
+         {"last_file", status.LastFile},
+         {"messages", status.Messages},
+         {"bytes", status.Bytes},
+         {"lost", status.Lost}},
+        Counted(status) + ", " +
+            (status.Files == 1 ? options.Record.Folder + "/" + status.LastFile
+                               : std::to_string(status.Files) + " files in " + options.Record.Folder));
     return status.Lost.empty() && status.Problem.empty();
 }
 
@@ -160,11 +149,21 @@ CLI::Validator Size(const ByteRange &range)
             "SIZE"};
 }
 
+// Files are removed whole, so a smaller size keeps none but the one that is written.
+void CheckSizes(const Options &options)
+{
+    if (options.Record.Keep > 0 && options.Record.Keep < options.Record.SplitSize)
+    {
+        throw CLI::ValidationError(
+            "--keep", "less than the size of one file; give a larger size, or a smaller --split-size");
+    }
+}
+
 void TellOfNew(const std::vector<std::string> &messages)
 {
     if (!messages.empty())
     {
-        Output::Talk("recording " + ListedNames(messages, [](const std::string &name) { return name; }));
+        Output::Talk("recording " + ListedNames(messages));
     }
 }
 
@@ -217,7 +216,7 @@ int Run(const Options &options, Wakeup &wakeup)
             }
             progress.Look(target->Status(), session.Seconds());
             // Looks for new names as often as RecorderManager does.
-            session.WaitUntil(std::min(session.Seconds() + 0.1, end()), [] { return false; });
+            session.WaitUntil(std::min(session.Seconds() + 0.1, end()));
         }
     }
     target->End();
@@ -235,9 +234,8 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddRecordCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command =
-        app.add_subcommand("record", "What is on the network, into a file that Foxglove opens");
+    const auto [command, options] = AddCommand<Options>(
+        app, chosen, "record", "What is on the network, into a file that Foxglove opens", &Run, &CheckSizes);
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any; without: all messages");
     AddCommonOptions(*command, options->Common, 5.0);
     command->add_option("--except", options->Record.Except, "Messages to leave out, as */CameraView");
@@ -268,18 +266,6 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
     AddExamples(*command, {"rabit record uav1/Pose 'uav*/Health' --for 60",
                            "rabit record --except '*/CameraView' --name test",
                            "rabit record --to flights --split-time 5min --keep 20GB"});
-    command->callback(
-        [options, &chosen]
-        {
-            // Files are removed whole, so a smaller size keeps none but the one that is written.
-            if (options->Record.Keep > 0 && options->Record.Keep < options->Record.SplitSize)
-            {
-                throw CLI::ValidationError("--keep",
-                                           "less than the size of one file; give a larger size, or a smaller "
-                                           "--split-size");
-            }
-            chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); };
-        });
 }
 
 }  // namespace Rabit::Tool

@@ -1,20 +1,14 @@
 // rabit recover: copies the readable part of a recording that was not ended in order into a whole one.
 #include <rabit/RabitVersion.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <cstdint>
 #include <filesystem>
-#include <memory>
 #include <span>
 
 #include "Command.h"
-#include "CommonOptions.h"
-#include "Output.h"
+#include "NewFile.h"
 #include "PlayedFiles.h"
 #include "Wakeup.h"
-#include "recording/FolderDisk.h"
 #include "recording/mcap/FileSource.h"
 #include "recording/mcap/McapRecovery.h"
 
@@ -56,26 +50,18 @@ std::string TargetOf(const Options &options)
 
 void Tell(const Options &options, const std::string &target, const Mcap::Recovered &recovered)
 {
-    for (const std::string &problem : recovered.Problems)
-    {
-        Output::Talk(problem);
-    }
+    Output::Talk(recovered.Problems);
     if (recovered.LostMessages > 0)
     {
         Output::Talk(std::to_string(recovered.LostMessages) +
                      " messages are of no channel, and were left out");
     }
-    if (options.Json)
-    {
-        Output::Object({{"file", target},
-                        {"messages", recovered.Messages},
-                        {"lost", recovered.LostMessages},
-                        {"problems", recovered.Problems}});
-    }
-    else
-    {
-        Output::Line(target + ": " + std::to_string(recovered.Messages) + " messages");
-    }
+    Output::ObjectOrLine(options.Json,
+                         {{"file", target},
+                          {"messages", recovered.Messages},
+                          {"lost", recovered.LostMessages},
+                          {"problems", recovered.Problems}},
+                         target + ": " + std::to_string(recovered.Messages) + " messages");
 }
 
 int Run(const Options &options, const Wakeup &wakeup)
@@ -87,26 +73,12 @@ int Run(const Options &options, const Wakeup &wakeup)
         return ProblemFound;
     }
     InterruptibleSource source(whole, wakeup);
-    const std::filesystem::path target = TargetOf(options);
-    FolderDisk disk(target.has_parent_path() ? target.parent_path().string() : ".");
-    std::string reason;
-    const auto file = disk.Create(target.filename().string(), reason);
-    if (!file)
-    {
-        Output::Talk(reason);
-        return ProblemFound;
-    }
-    Mcap::McapWriter writer(*file, {"rabit " RABIT_VERSION_STRING, "rabit", true});
+    const std::string target = TargetOf(options);
+    NewFile file(target);
+    Mcap::McapWriter writer(file.Sink(), {"rabit " RABIT_VERSION_STRING, "rabit", true});
     const Mcap::Recovered recovered = Mcap::Recover(source, writer);
-    const bool isWritten = recovered.IsWritten && file->Sync();
-    if (wakeup.IsInterrupted() || !isWritten)
-    {
-        Output::Talk(target.string() + (wakeup.IsInterrupted() ? ": was not finished, and is removed"
-                                                               : ": the disk takes no more; it is removed"));
-        disk.Remove(target.filename().string());
-        return ProblemFound;
-    }
-    Tell(options, target.string(), recovered);
+    file.Finish(recovered.IsWritten, wakeup.IsInterrupted());
+    Tell(options, target, recovered);
     return recovered.Messages > 0 ? Good : ProblemFound;
 }
 
@@ -114,16 +86,13 @@ int Run(const Options &options, const Wakeup &wakeup)
 
 void AddRecoverCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command =
-        app.add_subcommand("recover", "What can be read of a recording that was cut off, as a whole one");
+    const auto [command, options] = AddCommand<Options>(
+        app, chosen, "recover", "What can be read of a recording that was cut off, as a whole one", &Run);
     command->add_option("FILE", options->File, "A recording (MCAP), which stays as it is")->required();
     command->add_option("--to", options->To, "Where to; else FILE_recovered.mcap. No file is overwritten");
     command->add_flag("--json", options->Json, "One object");
     AddExamples(*command, {"rabit recover flight.mcap", "rabit recover flight.mcap --to whole.mcap",
                            "rabit recover flight.mcap --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

@@ -105,12 +105,4 @@ std::uint64_t ReplayNode::Replaced() const
     return replaced;
 }
 
-bool ReplayNode::IsTwice() const
-{
-    const auto problems = _session.Fleet().problems;
-    return std::any_of(problems.begin(), problems.end(),
-                       [this](const Gateway::Problem &problem)
-                       { return problem.subject == "node " + _name; });
-}
-
 }  // namespace Rabit::Tool

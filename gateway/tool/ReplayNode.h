@@ -46,7 +46,7 @@ public:
     // Posts that were not written because a newer one replaced them.
     std::uint64_t Replaced() const;
     // True if another live node has its name.
-    bool IsTwice() const;
+    bool IsTwice() const { return _session.IsTwice(); }
 
 private:
     struct Posted

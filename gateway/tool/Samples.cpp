@@ -84,9 +84,8 @@ void TellNobodyPublishes(const FleetSession &session, const std::string &pattern
     }
     else
     {
-        const auto same = [](const std::string &name) { return name; };
-        Output::Talk(ListedNames(matching, same) + (matching.size() == 1 ? " does" : " do") +
-                     " not publish `" + message + "`" + NearestWordHint(message, messages));
+        Output::Talk(ListedNames(matching) + (matching.size() == 1 ? " does" : " do") + " not publish `" +
+                     message + "`" + NearestWordHint(message, messages));
     }
     session.TellOfUnderway();
 }

@@ -3,20 +3,15 @@
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/idl/NearestWord.h>
 
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <memory>
 #include <optional>
 
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
 #include "FleetType.h"
 #include "InputLines.h"
 #include "Offers.h"
-#include "Output.h"
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
 
@@ -128,7 +123,6 @@ std::string WhyNobody(const Destination &to, const std::string &type, const Flee
             }
         }
     }
-    const auto same = [](const std::string &name) { return name; };
     if (!any)
     {
         return session.NoSuchNode(to.Node);
@@ -137,8 +131,8 @@ std::string WhyNobody(const Destination &to, const std::string &type, const Flee
     {
         return "`" + to.Node + "` accepts no queue `" + to.Queue + "`" + NearestWordHint(to.Queue, queues);
     }
-    return "`" + to.Node + "/" + to.Queue + "` does not take `" + type + "`, but " +
-           ListedNames(types, same) + NearestWordHint(type, types);
+    return "`" + to.Node + "/" + to.Queue + "` does not take `" + type + "`, but " + ListedNames(types) +
+           NearestWordHint(type, types);
 }
 
 // Sends one message and waits for its outcome.
@@ -309,9 +303,8 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddSendCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command =
-        app.add_subcommand("send", "Sends to a queue, waits for the outcome, and exits by it");
+    const auto [command, options] = AddCommand<Options>(
+        app, chosen, "send", "Sends to a queue, waits for the outcome, and exits by it", &Run);
     command->add_option("QUEUE", options->Address, "uav1/MissionControl; */MissionControl: of all nodes")
         ->required();
     command->add_option("TYPE", options->Type, "As Uav::Goto")->required();
@@ -325,8 +318,6 @@ void AddSendCommand(CLI::App &app, Chosen &chosen)
     AddExamples(*command, {"rabit send uav1/MissionControl Uav::GoHome '{}'",
                            R"(rabit send '*/MissionControl' Uav::GoHome '{"reason": "battery"}' --expire 5)",
                            "rabit send uav1/MissionControl Uav::Goto - --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

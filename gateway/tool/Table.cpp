@@ -1,7 +1,7 @@
 #include "Table.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstdio>
 
 namespace Rabit::Tool
@@ -32,11 +32,11 @@ std::vector<std::string> TableLines(const std::vector<std::vector<std::string>> 
     return lines;
 }
 
-std::string Formatted(const char *format, double value)
+std::string NumberText(double number, int digits, const char *unit)
 {
-    std::array<char, 48> text{};
-    std::snprintf(text.data(), text.size(), format, value);
-    return text.data();
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f%s", digits, number, unit);
+    return std::isfinite(number) ? text : "-";
 }
 
 }  // namespace Rabit::Tool

@@ -10,7 +10,7 @@ namespace Rabit::Tool
 // (SafeText).
 std::vector<std::string> TableLines(const std::vector<std::vector<std::string>> &rows);
 
-// Writes a number by a format of printf, such as `%.2f Hz`; 47 characters at most.
-std::string Formatted(const char *format, double value);
+// Returns a number for people with `digits` digits behind the point, `-` if it is not known.
+std::string NumberText(double number, int digits, const char *unit = "");
 
 }  // namespace Rabit::Tool

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "Table.h"
+
 namespace Rabit::Tool
 {
 namespace
@@ -138,17 +140,15 @@ std::string DurationText(double seconds)
     };
     constexpr double minute = 60.0;
     constexpr double hour = 60.0 * minute;
-    constexpr std::array<Unit, 4> units = {{{1.0, 0.001, 2, "ms"},
-                                            {2.0 * minute, 1.0, 2, "s"},
-                                            {2.0 * hour, minute, 1, "min"},
-                                            {std::numeric_limits<double>::infinity(), hour, 1, "h"}}};
+    constexpr std::array<Unit, 4> units = {{{1.0, 0.001, 2, " ms"},
+                                            {2.0 * minute, 1.0, 2, " s"},
+                                            {2.0 * hour, minute, 1, " min"},
+                                            {std::numeric_limits<double>::infinity(), hour, 1, " h"}}};
     for (const Unit &unit : units)
     {
         if (std::abs(seconds) < unit.Below)
         {
-            std::array<char, 64> text{};
-            std::snprintf(text.data(), text.size(), "%.*f %s", unit.Digits, seconds / unit.Length, unit.Name);
-            return text.data();
+            return NumberText(seconds / unit.Length, unit.Digits, unit.Name);
         }
     }
     return "-";

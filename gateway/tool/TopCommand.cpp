@@ -1,12 +1,11 @@
 // rabit top: which node uses the channel, and for what.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
+#include <rabit/gateway/ClassRates.h>
+
+#include <boost/algorithm/string/case_conv.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <limits>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,10 +13,8 @@
 
 #include "AirText.h"
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
 #include "OneNode.h"
-#include "Output.h"
 #include "SafeText.h"
 #include "Table.h"
 
@@ -26,7 +23,6 @@ namespace Rabit::Tool
 namespace
 {
 
-using Json = nlohmann::ordered_json;
 using Report = FleetExplorer::Report;
 
 struct Options
@@ -41,9 +37,7 @@ using Row = std::pair<std::string, std::optional<Gateway::AirStatus>>;
 
 std::string Number(double bytesPerSecond, bool zeroIsNone = false)
 {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.0f", bytesPerSecond);
-    return zeroIsNone && bytesPerSecond <= 0.0 ? "-" : text;
+    return zeroIsNone && bytesPerSecond <= 0.0 ? "-" : NumberText(bytesPerSecond, 0);
 }
 
 std::vector<std::string> CellsOf(const Row &row)
@@ -51,16 +45,17 @@ std::vector<std::string> CellsOf(const Row &row)
     std::vector<std::string> cells{SafeText(row.first)};
     if (!row.second)
     {
-        cells.resize(10, "?");
+        cells.resize(5 + ClassRates.size(), "?");
         return cells;
     }
     const Gateway::AirStatus &air = *row.second;
     cells.push_back(Number(air.used));
     cells.push_back(Number(air.budget, true));
     cells.push_back(Number(air.capacity, true));
-    for (const double rate : {air.discovery, air.presence, air.command, air.state, air.telemetry, air.bulk})
+    cells.push_back(Number(air.discovery));
+    for (const auto &[name, rate] : ClassRates)
     {
-        cells.push_back(Number(rate));
+        cells.push_back(Number(air.*rate));
     }
     return cells;
 }
@@ -78,11 +73,10 @@ Json JsonOf(const Row &row)
     add("budget_bytes_per_s", &Gateway::AirStatus::budget, true);
     add("capacity_bytes_per_s", &Gateway::AirStatus::capacity, true);
     add("discovery", &Gateway::AirStatus::discovery, false);
-    add("presence", &Gateway::AirStatus::presence, false);
-    add("command", &Gateway::AirStatus::command, false);
-    add("state", &Gateway::AirStatus::state, false);
-    add("telemetry", &Gateway::AirStatus::telemetry, false);
-    add("bulk", &Gateway::AirStatus::bulk, false);
+    for (const auto &[name, rate] : ClassRates)
+    {
+        add(name, rate, false);
+    }
     return object;
 }
 
@@ -97,8 +91,11 @@ bool Show(std::vector<Row> rows, bool json)
         return std::all_of(rows.begin(), rows.end(),
                            [](const Row &row) { return Output::Object(JsonOf(row)); });
     }
-    std::vector<std::vector<std::string>> cells{{"NODE", "B/s", "BUDGET", "CAPACITY", "DISCOVERY", "PRESENCE",
-                                                 "COMMAND", "STATE", "TELEMETRY", "BULK"}};
+    std::vector<std::vector<std::string>> cells{{"NODE", "B/s", "BUDGET", "CAPACITY", "DISCOVERY"}};
+    for (const auto &[name, rate] : ClassRates)
+    {
+        cells[0].push_back(boost::algorithm::to_upper_copy(std::string(name)));
+    }
     double all = 0.0;
     for (const Row &row : rows)
     {
@@ -106,9 +103,7 @@ bool Show(std::vector<Row> rows, bool json)
         all += row.second ? row.second->used : 0.0;
     }
     cells.push_back({"in all", Number(all)});
-    const std::vector<std::string> lines = TableLines(cells);
-    return std::all_of(lines.begin(), lines.end(),
-                       [](const std::string &line) { return Output::Line(line); });
+    return Output::Lines(TableLines(cells));
 }
 
 // Asks all live nodes, and waits for their answers, at most until `until`, in seconds from the start of the
@@ -151,7 +146,7 @@ int Run(const Options &options, Wakeup &wakeup)
     // Seconds in which most nodes are heard. Nodes that beat more seldom need --wait.
     constexpr double everybody = 1.5;
     FleetSession session(ConfigWithoutOffers(options.Common), options.Common, wakeup);
-    session.WaitUntil(options.Common.IsWaitGiven ? options.Common.Wait : everybody, [] { return false; });
+    session.WaitUntil(options.Common.IsWaitGiven ? options.Common.Wait : everybody);
     session.WaitForEverybody([] { return true; });
     if (!session.IsAnybodyThere())
     {
@@ -176,7 +171,7 @@ int Run(const Options &options, Wakeup &wakeup)
                 std::all_of(rows.begin(), rows.end(), [](const Row &row) { return row.second.has_value(); });
             return isWhole || !options.Once ? Good : ProblemFound;
         }
-        session.WaitUntil(end, [] { return false; });
+        session.WaitUntil(end);
     }
 }
 
@@ -184,15 +179,13 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddTopCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("top", "Which node sends how much, and of which class");
+    const auto [command, options] =
+        AddCommand<Options>(app, chosen, "top", "Which node sends how much, and of which class", &Run);
     AddCommonOptions(*command, options->Common, 3.0);
     command->add_option("--every", options->Every, "Seconds from one table to the next (default: 2)")
         ->check(CLI::Range(2.0, 3600.0));
     command->add_flag("--once", options->Once, "One table instead of one after the other until Ctrl-C");
     AddExamples(*command, {"rabit top", "rabit top --once --wait 10", "rabit top --every 10 --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

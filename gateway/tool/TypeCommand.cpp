@@ -1,17 +1,11 @@
 // rabit type: the IDL of a type.
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
-#include <memory>
 
 #include <rabit/idl/NearestWord.h>
 #include "Command.h"
-#include "CommonOptions.h"
 #include "FleetSession.h"
 #include "FleetType.h"
 #include "Offers.h"
-#include "Output.h"
 #include "SafeText.h"
 
 namespace Rabit::Tool
@@ -99,20 +93,17 @@ int Run(const Options &options, Wakeup &wakeup)
         }
         const bool isRead =
             options.Common.Json
-                ? Output::Object(nlohmann::ordered_json{{"type", name},
-                                                        {"definition", Offers::HashText(definition)},
-                                                        {"nodes", holders},
-                                                        {"idl", type.Text}})
+                ? Output::Object(Json{{"type", name},
+                                      {"definition", Offers::HashText(definition)},
+                                      {"nodes", holders},
+                                      {"idl", type.Text}})
                 : Output::Line(SafeLines(type.Text.substr(0, type.Text.find_last_not_of('\n') + 1)));
         if (!isRead)
         {
             return Good;
         }
     }
-    for (const std::string &line : Offers::Differences(nodes))
-    {
-        Output::Talk(line);
-    }
+    Output::Talk(Offers::Differences(nodes));
     return good ? Good : ProblemFound;
 }
 
@@ -120,15 +111,13 @@ int Run(const Options &options, Wakeup &wakeup)
 
 void AddTypeCommand(CLI::App &app, Chosen &chosen)
 {
-    auto options = std::make_shared<Options>();
-    CLI::App *command = app.add_subcommand("type", "The IDL of a type, from a node that has it");
+    const auto [command, options] =
+        AddCommand<Options>(app, chosen, "type", "The IDL of a type, from a node that has it", &Run);
     command->add_option("NAME", options->Name, "Of a type, as Uav::Pose, or of a message, as Pose")
         ->required();
     AddCommonOptions(*command, options->Common, 3.0);
     AddExamples(*command,
                 {"rabit type Uav::Pose", "rabit type uav1/Pose", "rabit type Pose --domain 7 --json"});
-    command->callback([options, &chosen]
-                      { chosen.Run = [options](Wakeup &wakeup) { return Run(*options, wakeup); }; });
 }
 
 }  // namespace Rabit::Tool

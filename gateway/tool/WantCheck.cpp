@@ -95,11 +95,6 @@ const std::string *NearMatch(const std::string &pattern, const std::vector<std::
     return near == names.end() ? nullptr : &*near;
 }
 
-std::string Listed(const std::vector<std::string> &names)
-{
-    return ListedNames(names, [](const std::string &name) { return name; });
-}
-
 std::vector<std::string> MessagesOf(const std::vector<const GatewayConfig *> &nodes)
 {
     std::set<std::string> names;
@@ -248,11 +243,12 @@ void WantCheck::CheckSubscription(const SubscribeRule &rule)
                     [&rule](const GatewayConfig *other) { return Offered(*other, rule.Message) != nullptr; });
     if (!somebodyHasIt && !meant.empty())
     {
-        Fail(rule.Line, what + ": " +
-                            (IsEverybody(rule.From) ? "nobody publishes it"
-                             : meant.size() == 1    ? meant.front()->Node + " does not publish it"
-                                                    : "none of " + Listed(NamesOf(meant)) + " publishes it") +
-                            NearestWordHint(rule.Message, MessagesOf(meant)));
+        Fail(rule.Line,
+             what + ": " +
+                 (IsEverybody(rule.From) ? "nobody publishes it"
+                  : meant.size() == 1    ? meant.front()->Node + " does not publish it"
+                                         : "none of " + ListedNames(NamesOf(meant)) + " publishes it") +
+                 NearestWordHint(rule.Message, MessagesOf(meant)));
         return;
     }
     for (const GatewayConfig *other : meant)
@@ -315,11 +311,11 @@ void WantCheck::CheckSending(const SendRule &rule)
         Fail(rule.Line, what + ": " +
                             (rule.To == "*"      ? std::string("nobody accepts")
                              : meant.size() == 1 ? meant.front()->Node + " does not accept"
-                                                 : "none of " + Listed(NamesOf(meant)) + " accepts") +
+                                                 : "none of " + ListedNames(NamesOf(meant)) + " accepts") +
                             " such a queue" + NearestWordHint(rule.Queue, QueuesOf(meant)));
         return;
     }
-    Fail(rule.Line, what + ": " + Listed(refusing) + (refusing.size() == 1 ? " accepts" : " accept") +
+    Fail(rule.Line, what + ": " + ListedNames(refusing) + (refusing.size() == 1 ? " accepts" : " accept") +
                         " it from others only, not from " + _config.Node);
 }
 

@@ -84,30 +84,15 @@ int RunProgram(int argc, char **argv)
         "Exit code: 0 good, 1 a problem was found, 2 wrong usage, 3 no network or nobody in it, 130 Ctrl-C "
         "before an answer.");
     Chosen chosen;
-    AddNodesCommand(app, chosen);
-    AddMessagesCommand(app, chosen);
-    AddTypeCommand(app, chosen);
-    AddEchoCommand(app, chosen);
-    AddHzCommand(app, chosen);
-    AddBytesCommand(app, chosen);
-    AddAgeCommand(app, chosen);
-    AddSendCommand(app, chosen);
-    AddPostCommand(app, chosen);
-    AddRecordCommand(app, chosen);
-    AddPlayCommand(app, chosen);
-    AddInfoCommand(app, chosen);
-    AddRecoverCommand(app, chosen);
-    AddFoxgloveCommand(app, chosen);
-    AddMergeCommand(app, chosen);
-    AddKnewCommand(app, chosen);
-    AddCheckCommand(app, chosen);
-    AddLogCommand(app, chosen);
-    AddPingCommand(app, chosen);
-    AddFetchCommand(app, chosen);
-    AddTopCommand(app, chosen);
-    AddDoctorCommand(app, chosen);
-    AddKeysCommand(app, chosen);
-    AddLabCommand(app, chosen);
+    for (const auto add :
+         {&AddNodesCommand, &AddMessagesCommand, &AddTypeCommand,    &AddEchoCommand,     &AddHzCommand,
+          &AddBytesCommand, &AddAgeCommand,      &AddSendCommand,    &AddPostCommand,     &AddRecordCommand,
+          &AddPlayCommand,  &AddInfoCommand,     &AddRecoverCommand, &AddFoxgloveCommand, &AddMergeCommand,
+          &AddKnewCommand,  &AddCheckCommand,    &AddLogCommand,     &AddPingCommand,     &AddFetchCommand,
+          &AddTopCommand,   &AddDoctorCommand,   &AddKeysCommand,    &AddLabCommand})
+    {
+        add(app, chosen);
+    }
     TakeOneValueEach(app);
     // A line for completion is unfinished, so it cannot be parsed.
     const std::vector<std::string> words(argv + 1, argv + argc);
