@@ -87,6 +87,14 @@ Json JsonOf(const Gateway::NodeStatus &status, const FleetSession::Node *node)
     object["last_heard_s"] = status.last_heard_s;
     object["round_trip_s"] = status.round_trip_s;
     object["delivery_rate"] = status.delivery_rate > 0.0 ? Json(status.delivery_rate) : Json(nullptr);
+    for (const Gateway::PathToNode &path : status.paths)
+    {
+        object["path"] = status.path;
+        object["paths"].push_back({{"path", path.path},
+                                   {"state", ToString(path.state)},
+                                   {"last_heard_s", path.last_heard_s},
+                                   {"round_trip_s", path.round_trip_s}});
+    }
     object["publishes"] = Json::array();
     object["accepts"] = Json::array();
     if (node != nullptr && node->Offers)
@@ -130,11 +138,31 @@ bool ShowJson(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node>
     return good;
 }
 
+// The path in use, and the state on the others: `mesh (modem STALE)`.
+std::string PathText(const Gateway::NodeStatus &status)
+{
+    std::string others;
+    for (const Gateway::PathToNode &path : status.paths)
+    {
+        if (path.path != status.path)
+        {
+            others += (others.empty() ? "" : ", ") + SafeText(path.path) + ' ' + ToString(path.state);
+        }
+    }
+    return SafeText(status.path) + (others.empty() ? "" : " (" + others + ")");
+}
+
 bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node> &nodes,
                const std::vector<Gateway::Problem> &problems)
 {
     std::vector<std::vector<std::string>> rows{
         {"NODE", "STATE", "HEARD", "ROUND TRIP", "DELIVERY", "PUBLISHES", "ACCEPTS"}};
+    // This program may itself reach the fleet over several paths (--config).
+    const bool hasPaths = !fleet.paths.empty();
+    if (hasPaths)
+    {
+        rows.front().push_back("PATH");
+    }
     for (const Gateway::NodeStatus &status : fleet.nodes)
     {
         const FleetSession::Node *node = FindNode(nodes, status.node);
@@ -145,6 +173,10 @@ bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node
              status.delivery_rate > 0.0 ? NumberText(status.delivery_rate, 0, " B/s") : "-",
              known ? Names(node->Offers->publishes, [](const auto &item) { return item.message; }) : "?",
              known ? Names(node->Offers->accepts, [](const auto &item) { return item.queue; }) : "?"});
+        if (hasPaths)
+        {
+            rows.back().push_back(PathText(status));
+        }
     }
     bool good = Output::Lines(TableLines(rows));
     for (const Gateway::Problem &problem : problems)

@@ -161,6 +161,8 @@ Json ToJson(const AircraftData &aircraft)
                    {"heard_s", Short(aircraft.HeardS)},
                    {"round_trip_s", Rounded(aircraft.RoundTripS, 1e5)},
                    {"delivery_rate", Rounded(aircraft.DeliveryRate, 1)}};
+    if (!aircraft.Path.empty())
+        object["path"] = aircraft.Path;
     if (aircraft.WithoutOrders)
         object["without_orders"] = true;
     if (aircraft.Replay)

@@ -57,6 +57,7 @@ struct AircraftData
     std::string Reason;       // why it is not UP
     double HeardS = Unknown;  // since it was last heard
     double RoundTripS = Unknown;
+    std::string Path{};  // by which it is reached; empty: there is only one
     double DeliveryRate = Unknown;  // bytes a second of queue messages that arrive there
     Aged<Uav::Pose> Pose;
     Aged<Uav::MissionState> Mission;

@@ -133,6 +133,7 @@ void WebPage::Show(AircraftData &data, AircraftFollower &follower) const
         data.Replay = status->replay;
         data.HeardS = status->last_heard_s + _data.FleetAgeS;
         data.RoundTripS = status->round_trip_s;
+        data.Path = status->path;
         data.DeliveryRate = status->delivery_rate > 0 ? status->delivery_rate : AircraftData::Unknown;
     }
     for (const NodeCommands &commands : _tally->nodes)

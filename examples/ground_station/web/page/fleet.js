@@ -153,5 +153,6 @@ export function showSelected(model) {
   for (const {node, kind, left} of destinationsOf(model)) if (node === aircraft.node && left !== null) said.push(`${kind}: ${wayLeft(left)} left`);
   // What a small screen leaves out of the table.
   if (isNumber(aircraft.round_trip_s)) said.push(`RTT ${fixed(aircraft.round_trip_s * 1000, 1)} ms`);
+  if (aircraft.path) said.push(`over ${aircraft.path}`);
   setText(byId('selected-text'), said.join(' · '));
 }
