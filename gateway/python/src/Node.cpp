@@ -22,7 +22,7 @@ namespace Rabit::Python
 {
 
 Node::Node(GatewayConfig config)
-    : _config(std::move(config)), _process(getpid()), _parts(std::make_unique<Parts>())
+    : _config(std::move(config)), _process(getpid()), _parts(std::make_shared<Parts>())
 {
 }
 
@@ -30,13 +30,13 @@ Node::~Node()
 {
     if (getpid() != _process)
     {
-        static_cast<void>(_parts.release());  // its threads are in the other process
+        new std::shared_ptr<Parts>(_parts);  // never destroyed: its threads are in the other process
         return;
     }
     Stop();
 }
 
-Node::Parts &Node::Use()
+std::shared_ptr<Node::Parts> Node::Use()
 {
     if (getpid() != _process)
     {
@@ -48,28 +48,24 @@ Node::Parts &Node::Use()
     {
         throw std::runtime_error("the node `" + Name() + "` was stopped; a node runs once, make another one");
     }
-    return *_parts;
+    return _parts;
 }
 
-FleetExplorer &Node::UseNetwork()
+std::shared_ptr<Node::Parts> Node::UseNetwork()
 {
-    Parts &parts = Use();
-    if (parts.Explorer == nullptr)
+    auto parts = Use();
+    if (parts->Explorer == nullptr)
     {
         throw std::runtime_error("the node `" + Name() + "` does not run yet: use it in a `with` block");
     }
-    return *parts.Explorer;
-}
-
-RabitWorkspace &Node::Workspace()
-{
-    return Use().Workspace;
+    return parts;
 }
 
 std::shared_ptr<InboundQueue> Node::AddQueue(const std::string &name, int capacity)
 {
     auto queue = std::make_shared<InboundQueue>(name, capacity);
-    Parts &parts = Use();
+    const auto held = Use();
+    Parts &parts = *held;
     parts.Workspace.AddManagerMessageQueue(name, queue->Local());
     parts.Queues.push_back(queue);
     return queue;
@@ -77,7 +73,8 @@ std::shared_ptr<InboundQueue> Node::AddQueue(const std::string &name, int capaci
 
 PythonManager &Node::AddManager(const std::string &name, py::object object, double period)
 {
-    Parts &parts = Use();
+    const auto held = Use();
+    Parts &parts = *held;
     if (_isRunning)
     {
         throw std::runtime_error("managers are added before the node starts");
@@ -110,7 +107,8 @@ void *LoadLibrary(const std::string &path)
 void Node::AddLibrary(const std::string &path)
 {
     using AddManagers = void (*)(RabitReactor &, GatewayConfig &, RabitWorkspace &);
-    Parts &parts = Use();
+    const auto held = Use();
+    Parts &parts = *held;
     void *library = LoadLibrary(path);
     const auto add = reinterpret_cast<AddManagers>(dlsym(library, "rabit_add_managers"));
     if (add == nullptr)
@@ -123,7 +121,8 @@ void Node::AddLibrary(const std::string &path)
 
 void Node::Start()
 {
-    Parts &parts = Use();
+    const auto held = Use();
+    Parts &parts = *held;
     if (_isRunning)
     {
         throw std::runtime_error("the node `" + Name() + "` runs already");
@@ -150,12 +149,12 @@ void Node::Start()
 
 void Node::Stop()
 {
-    if (!_parts || getpid() != _process)
+    if (!_parts || getpid() != _process || _isStopped.exchange(true))
     {
         return;
     }
     _isRunning = false;
-    const std::unique_ptr<Parts> parts = std::move(_parts);
+    const auto parts = _parts;
     {
         const std::lock_guard lock(parts->Mutex);
         for (const auto &weak : parts->Subscriptions)
@@ -171,13 +170,19 @@ void Node::Stop()
     {
         queue->Close();
     }
-    // Managers may wait for the GIL, and end with it.
-    const py::gil_scoped_release released;
-    parts->Reactor->ShutdownAllManagers();
-    if (parts->Runner.joinable())
     {
-        parts->Runner.join();
+        // Managers may wait for the GIL, and use the node until they have ended.
+        const py::gil_scoped_release released;
+        parts->Reactor->ShutdownAllManagers();
+        if (parts->Runner.joinable())
+        {
+            parts->Runner.join();
+        }
     }
+    _parts.reset();
+    const py::gil_scoped_release released;
+    const std::unique_lock lock(parts->InUse);
+    parts->Explorer = nullptr;
     parts->Posted.clear();
     parts->Reactor.reset();
 }
@@ -224,7 +229,7 @@ bool Node::IsForeign(const std::string &name) const
 std::shared_ptr<Subscription> Node::Subscribe(const std::string &pattern, const std::string &message,
                                               std::shared_ptr<MessageClass> type)
 {
-    FleetExplorer &explorer = UseNetwork();
+    const auto parts = UseNetwork();
     const std::string whole = pattern.empty() ? message : pattern + "/" + message;
     const bool isLocal = IsForeign(whole) || pattern == Name();
     auto subscription = std::make_shared<Subscription>(_parts->Workspace, isLocal ? "" : pattern,
@@ -246,7 +251,7 @@ std::shared_ptr<Subscription> Node::Subscribe(const std::string &pattern, const 
     }
     if (!isLocal)
     {
-        explorer.Subscribe(rule);
+        parts->Explorer->Subscribe(rule);
     }
     {
         const std::lock_guard lock(_parts->Mutex);
@@ -263,7 +268,8 @@ void Node::Unsubscribe(const std::shared_ptr<Subscription> &subscription)
 
 void Node::Post(const std::string &name, py::handle value)
 {
-    Parts &parts = Use();
+    const auto held = Use();
+    Parts &parts = *held;
     const std::shared_ptr<MessageClass> type = ClassOf(value);
     if (!type)
     {
@@ -297,7 +303,8 @@ void Node::Post(const std::string &name, py::handle value)
 std::shared_ptr<Receipt> Node::Send(const std::string &address, py::handle value,
                                     std::optional<double> expire)
 {
-    Parts &parts = Use();
+    const auto held = Use();
+    Parts &parts = *held;
     const std::shared_ptr<MessageClass> type = ClassOf(value);
     if (!type)
     {
@@ -344,7 +351,7 @@ void Node::SetExpiry(const std::string &address, double seconds)
     }
     if (isNew)
     {
-        UseNetwork().SetExpiry(
+        UseNetwork()->Explorer->SetExpiry(
             address.substr(0, slash), address.substr(slash + 1),
             std::chrono::milliseconds(static_cast<std::int64_t>(std::ceil(1000 * seconds))));
     }
@@ -352,27 +359,29 @@ void Node::SetExpiry(const std::string &address, double seconds)
 
 Gateway::Fleet Node::Fleet()
 {
-    UseNetwork();
-    _parts->Fleet->FetchMessage();
-    return *_parts->Fleet;
+    const auto parts = UseNetwork();
+    parts->Fleet->FetchMessage();
+    return *parts->Fleet;
 }
 
 bool Node::Flush(double seconds)
 {
-    FleetExplorer &explorer = UseNetwork();
+    const auto parts = UseNetwork();
     const py::gil_scoped_release released;
-    return explorer.WaitUntilTaken(
-        std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
+    const std::shared_lock lock(parts->InUse);
+    return parts->Explorer != nullptr &&
+           parts->Explorer->WaitUntilTaken(
+               std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
 }
 
 std::vector<std::string> Node::Messages()
 {
     std::set<std::string> names;
-    for (const MessageInfo &info : Use().Workspace.GetListOfMessages())
+    for (const MessageInfo &info : Use()->Workspace.GetListOfMessages())
     {
         names.insert(info.Name);
     }
-    for (const FleetExplorer::Node &node : UseNetwork().Nodes())
+    for (const FleetExplorer::Node &node : UseNetwork()->Explorer->Nodes())
     {
         if (node.Offers)
         {

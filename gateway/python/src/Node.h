@@ -14,6 +14,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <shared_mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -76,7 +77,6 @@ public:
     bool Flush(double seconds);
     // The names of the messages here, and those of other nodes as they announce them.
     std::vector<std::string> Messages();
-    RabitWorkspace &Workspace();
 
 private:
     struct Parts
@@ -86,6 +86,7 @@ private:
         std::map<std::string, std::pair<std::shared_ptr<MessageClass>, std::shared_ptr<RabitMessage>>> Posted;
         std::shared_ptr<Gateway::Fleet> Fleet = std::make_shared<Gateway::Fleet>();
         FleetExplorer *Explorer = nullptr;
+        std::shared_mutex InUse;              // by calls that use the explorer without the GIL
         RecorderManager *Recorder = nullptr;  // null: nothing is recorded
         std::thread Runner;
         std::mutex Mutex;
@@ -94,8 +95,9 @@ private:
         std::map<std::string, double> Expires;  // by address
     };
 
-    Parts &Use();
-    FleetExplorer &UseNetwork();
+    // Holding what they return keeps the parts alive while the GIL is released.
+    std::shared_ptr<Parts> Use();
+    std::shared_ptr<Parts> UseNetwork();
     // All messages of a link live equally long: throws py::value_error for another time than before.
     void SetExpiry(const std::string &address, double seconds);
     static void AttachAll(Parts &parts);
@@ -103,8 +105,9 @@ private:
 
     GatewayConfig _config;
     const pid_t _process;
-    std::unique_ptr<Parts> _parts;
+    std::shared_ptr<Parts> _parts;  // until the managers have ended
     std::atomic<bool> _isRunning{false};
+    std::atomic<bool> _isStopped{false};
     std::atomic<std::uint64_t> _nextReceipt{1};
     const std::shared_ptr<Outcomes> _outcomes = std::make_shared<Outcomes>();
 };

@@ -96,6 +96,15 @@ def test_the_types_are_right():
         assert found.returncode == 0, found.stdout
 
 
+def test_the_package_is_the_program_rabit(tmp_path):
+    program = tmp_path / "rabit"
+    program.write_text("#!/bin/sh\necho program $@\n")
+    program.chmod(0o755)
+    shown = subprocess.run([sys.executable, "-m", "rabit", "nodes"], capture_output=True, text=True,
+                           env={**os.environ, "PATH": f"{tmp_path}:{os.environ['PATH']}"})
+    assert shown.stdout == "program nodes\n" or "nobody" in shown.stdout + shown.stderr
+
+
 def test_the_package_is_installed_by_pip(tmp_path):
     """From a build that is there: RABIT_BUILD."""
     pytest.importorskip("pip")

@@ -75,7 +75,7 @@ TEST_F(IdlFileTest, FilesIncludeOthersOnceFromBesideThemAndFromFolders)
 TEST_F(IdlFileTest, AReasonNamesFileAndLine)
 {
     EXPECT_THAT(ReasonOf("module A {\nstruct B { wstring x; };\n};"), HasSubstr("a.idl:2: "));
-    EXPECT_THAT(ReasonOf("module A {\n@final struct B { long x }\n};"), HasSubstr("a.idl:3: "));
+    EXPECT_THAT(ReasonOf("module A {\n@final struct B { long x }\n};"), HasSubstr("a.idl:2: "));
     EXPECT_THAT(ReasonOf("\n#include \"none.idl\"\n"), EndsWith("a.idl:2: there is no file `none.idl`"));
     EXPECT_THAT(ReasonOf("#if 1\n#endif\n"), HasSubstr("a.idl:1: `#if 1` is not supported here"));
     EXPECT_THAT(ReasonOf("@unheard_of @final struct B { long x; };"),
