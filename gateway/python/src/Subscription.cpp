@@ -74,6 +74,10 @@ std::string Subscription::Attach(const std::string &node)
         }));
     {
         const std::lock_guard lock(_shared->Mutex);
+        if (_shared->IsClosed)
+        {
+            return "";  // another thread stops the node: nothing of its workspace may stay
+        }
         _sources[node] = source;
     }
     Queue(*_shared, source);  // it may have a value already
