@@ -1,7 +1,10 @@
 // Message types at run time: bytes, JSON, and types that a program was not built with.
 #include <gtest/gtest.h>
+#include <rabit/dynamic/CdrBuilder.h>
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/dynamic/DynamicType.h>
+#include <rabit/dynamic/IdlFile.h>
+#include <rabit/dynamic/Shape.h>
 #include <rabit/idl/Box.h>
 #include <rabit/idl/CdrReader.h>
 #include <rabit/idl/CdrSizer.h>
@@ -21,6 +24,8 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>
@@ -63,6 +68,28 @@ TEST(TypesExample, ATypeMayBeKnownAtRunTimeAlone)
     EXPECT_EQ(describing.IdlType().Name(), "Late::Report");
 }
 // [/dynamic]
+
+// [file]
+TEST(TypesExample, AnIdlFileIsLoadedWhileTheProgramRuns)
+{
+    const std::filesystem::path path = std::filesystem::temp_directory_path() / "rabit_types_example.idl";
+    std::ofstream(path)
+        << "module Loaded {\nconst long Most = 4;\n// A point.\n@final struct Point { double x; };\n};\n";
+    const Rabit::IdlFile file = Rabit::IdlFile::Load(path.string());
+    std::filesystem::remove(path);
+    ASSERT_EQ(file.Reason, "");
+    const std::shared_ptr<const Rabit::DynamicType> point = file.Messages.at(0);
+    EXPECT_EQ(point->Name(), "Loaded::Point");
+    EXPECT_EQ(file.Comments.at("Loaded::Point"), "A point.");
+
+    // The shape tells the members; a builder makes samples of them.
+    EXPECT_EQ(point->Root().Parts.at(0).Name, "x");
+    EXPECT_EQ(point->Root().Parts.at(0).Type->What, Rabit::Dynamic::Kind::Double);
+    Rabit::Dynamic::CdrBuilder builder;
+    builder.Put(0, 8);
+    EXPECT_EQ(builder.Finish(), point->DefaultSample());
+}
+// [/file]
 
 // [cdr]
 TEST(TypesExample, CdrIsWrittenAndReadByHand)
