@@ -55,7 +55,7 @@ def fill(programs, transport, more):
             fleet.start(node, "--rate", str(RATE_HZ), "--padding", str(PADDING))
         for node in AIRCRAFT:
             station.wait_for(lambda text, node=node: text.startswith(f"age {node}"), bf.LIMIT)
-        time.sleep(30)
+        time.sleep(20)
         fleet.wait_until_whole_but_newest(AIRCRAFT, bf.LIMIT)
         before = time.monotonic()
         time.sleep(60)

@@ -9,8 +9,10 @@
 #include <array>
 #include <cstring>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,11 +29,16 @@ public:
     {
         Member(ThinMedium &medium, std::string name, std::size_t index) : Medium(medium), Index(index)
         {
-            LinkSettings settings;
-            settings.Node = std::move(name);
-            settings.Clock = index + 1;
-            settings.AirOverhead = medium.Headers;
-            Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
+            Settings.Node = std::move(name);
+            Settings.Clock = index + 1;
+            Settings.AirOverhead = medium.Headers;
+            Node = std::make_unique<LinkNode>(Settings, *this, *this, *this);
+        }
+        // Forgets all, as after kill -9.
+        void Restart()
+        {
+            Settings.Clock += 100;
+            Node = std::make_unique<LinkNode>(Settings, *this, *this, *this);
         }
         void Send(const LinkFrame &frame) override
         {
@@ -39,9 +46,13 @@ public:
             LinkFrameCodec::Encode(frame, bytes);
             Medium.Offer(Index, std::move(bytes));
         }
-        void OnOutcome(std::uint64_t, std::string_view, std::string_view, LinkOutcome outcome) override
+        void OnOutcome(std::uint64_t id, std::string_view, std::string_view, LinkOutcome outcome) override
         {
             ++Outcomes[static_cast<std::size_t>(outcome)];
+            if (OnEnd)
+            {
+                OnEnd(id, outcome);
+            }
         }
         bool Accepts(std::string_view, std::string_view) override { return true; }
         bool AcceptsType(std::string_view, std::string_view) const override { return true; }
@@ -51,10 +62,14 @@ public:
             std::memcpy(&enqueuedAt, delivery.Payload.data(), sizeof enqueuedAt);
             Delays[std::string(delivery.Queue)].push_back(Medium.Now - LinkTime(enqueuedAt));
             DeliveredBytes += delivery.Payload.size();
+            if (OnDelivery)
+            {
+                OnDelivery(delivery.Payload);
+            }
             return LocalQueueResult::Ok;
         }
         std::size_t Room(std::string_view) const override { return 1000; }
-        std::uint64_t Above(std::uint64_t floor) override { return floor + (1ULL << 32); }
+        std::uint64_t Above(std::uint64_t floor) override { return floor + (++Lives << 32); }
 
         // Returns true if the outbox accepted the message.
         bool Enqueue(std::string_view to, std::string_view queue, std::size_t bytes)
@@ -82,6 +97,10 @@ public:
 
         ThinMedium &Medium;
         const std::size_t Index;
+        LinkSettings Settings;
+        std::uint64_t Lives = 0;
+        std::function<void(std::span<const std::uint8_t> payload)> OnDelivery;
+        std::function<void(std::uint64_t id, LinkOutcome outcome)> OnEnd;
         std::unique_ptr<LinkNode> Node;
         std::map<std::string, std::vector<LinkTime>> Delays;
         std::array<std::size_t, 4> Outcomes{};
