@@ -34,10 +34,11 @@ def percentile(values, share):
 
 
 def shown(process, begin, end):
-    """Ages, and how long commands took that were delivered, in seconds."""
-    lines = [text.split() for when, text in list(process.lines) if begin <= when < end]
-    ages = [float(words[2]) for words in lines if words and words[0] == "age"]
-    commands = [float(words[-1]) for words in lines if words and words[0] == "command" and words[2] == "delivered"]
+    """Ages, and how long commands took that were sent and delivered in that time, in seconds."""
+    lines = [(when, text.split()) for when, text in list(process.lines) if begin <= when < end]
+    ages = [float(words[2]) for _, words in lines if words and words[0] == "age"]
+    commands = [float(words[-1]) for when, words in lines
+                if words and words[0] == "command" and words[2] == "delivered" and when - float(words[-1]) >= begin]
     return ages, commands
 
 
