@@ -124,13 +124,20 @@ class Faults:
 
     def _loss(self, event, begins):
         for network in self._networks(event):
-            if begins:
-                for a, b in self._pairs(event, network):
-                    self._tell(network, f"loss {event.values['loss']:g} burst {event.values['burst']:g} {a} {b}")
-            else:
-                self._nets.restore_loss(network)
-                if network.name in self._places:
-                    self._places[network.name].forget()
+            for a, b in self._pairs(event, network):
+                loss, burst = (event.values["loss"], event.values["burst"]) if begins else self._usual_loss(network, a, b)
+                self._tell(network, f"loss {loss:g} burst {burst:g} {a} {b}")
+
+    def _usual_loss(self, network, a, b):
+        """(percent, burst) of a link without events, by distance, too."""
+        usual = network.loss_of(a, b)
+        place = self._places.get(network.name)
+        return (place.loss(a, b, usual[0]), usual[1]) if place else usual
+
+    def rules_loss(self, network, a, b):
+        """True if an event decides the loss of that link now, in place of the distance."""
+        return any(event.verb == "loss" and event.values["network"] in (None, network.name)
+                   and a in event.values["from"] and b in event.values["to"] for event in self._active)
 
     def _delay(self, event, begins):
         for network in self._networks(event):

@@ -81,10 +81,6 @@ class Networks:
                 self.spaces.ip(host, "route", "add", "224.0.0.0/4", "dev", network.name)
         set_links(channel, network)
 
-    def restore_loss(self, network):
-        """Loss as the scenario has it."""
-        set_loss(self.radios[network.name], network)
-
     def restore_delay(self, network):
         set_delay(self.radios[network.name], network)
 

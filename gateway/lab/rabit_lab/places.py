@@ -110,14 +110,12 @@ class Places:
     def changes(self, time, least=1.0):
         """[(from, to, percent, burst)] of the links whose loss has changed by a percent or more since the last call."""
         positions = self.positions(time)
-        base = {(a, b): (link.loss, link.burst) for link in self._network.links
-                for a in link.origins for b in link.destinations}
         found = []
         for one, first in positions.items():
             for other, second in positions.items():
                 if one == other:
                     continue
-                loss, burst = base.get((one, other), (self._network.loss, self._network.burst))
+                loss, burst = self._network.loss_of(one, other)
                 far = loss_at(math.dist(first, second), self._range)
                 percent = 100 * (1 - (1 - loss / 100) * (1 - far / 100))
                 if abs(percent - self._told.get((one, other), loss)) >= least:
@@ -125,9 +123,9 @@ class Places:
                     found.append((one, other, percent, burst))
         return found
 
-    def forget(self):
-        """The network has its own losses again; the next call of `changes` sets those by distance."""
-        self._told.clear()
+    def loss(self, one, other, usual):
+        """The percent that `changes` gave last, or the usual one."""
+        return self._told.get((one, other), usual)
 
     def high(self, least=50.0):
         """[(from, to, percent)] of the links that lose half or more by distance."""

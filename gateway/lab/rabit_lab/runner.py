@@ -107,7 +107,8 @@ class Runner:
     def _place(self, now):
         for name, place in self._places.items():
             for one, other, percent, burst in place.changes(now):
-                self._nets.radios[name].tell(f"loss {percent:.2f} burst {burst:g} {one} {other}")
+                if not self._faults.rules_loss(self.scenario.networks[name], one, other):
+                    self._nets.radios[name].tell(f"loss {percent:.2f} burst {burst:g} {one} {other}")
             for one, other, percent in place.high():
                 self.flight.distant.append((now, one, other, percent))
             for node, position in place.positions(now).items():

@@ -68,6 +68,14 @@ class Network:
     hidden: list = dataclasses.field(default_factory=list)
     range: typing.Optional[Range] = None
 
+    def loss_of(self, origin, destination):
+        """(percent, burst) of a link, without loss by distance."""
+        found = (self.loss, self.burst)
+        for link in self.links:
+            if origin in link.origins and destination in link.destinations:
+                found = (link.loss, link.burst)
+        return found
+
 
 @dataclasses.dataclass
 class Event:

@@ -226,6 +226,8 @@ class PlacesTest(InFolder):
         changed = {(one, other) for one, other, percent, _ in place.changes(0.0) if percent > 98}
         self.assertEqual(changed, {("uav1", "ground"), ("ground", "uav1")})
         self.assertEqual(place.changes(0.5), [])
+        self.assertGreater(place.loss("uav1", "ground", 5.0), 98)  # after an event, too
+        self.assertEqual(place.loss("uav1", "uav2", 5.0), 5.0)
 
     def test_a_track_is_followed_between_its_points(self):
         (self.folder / "track.csv").write_text("time_s,node,x,y,z\n0,uav1,0,0,0\n10,uav1,100,0,0\n", encoding="utf-8")

@@ -65,13 +65,13 @@ RADIO = """network:
 run: 27s
 events:
   - {at: 11s, loss: 100%, from: uav3, to: uav1, for: 5s}
-  - {at: 12s, loss: 10%, for: 1s}
+  - {at: 12s, loss: 10%, from: uav2, to: uav3, for: 1s}
   - {at: 25s, outage: radio, for: 1s}
 expect:
   - all up within 11s
   - uav3 lost within 6s after 11s at uav1
   - uav3 up within 4s after 16s at uav1
-  - uav4 lost within 6s after 14s
+  - uav4 lost within 5s after 14s
   - uav4 up within 4s after 22s
   - "radio: used < 50%"
 """
