@@ -112,7 +112,9 @@ class Reaches(Expectation):
             life = flight.life_at(node, self.after + self.within)
             incarnation = life.incarnation if life else None
             for index, observer in flight.observers(node):
-                if observer.node not in self.at or not observer.is_there(self.after) \
+                # At the beginning of the run the nodes start one after the other.
+                begin = self.after if self.after > 0 else self.within
+                if observer.node not in self.at or not observer.is_there(begin) \
                         or not observer.is_there(self.after + self.within) \
                         or any(a < self.after + self.within and b > self.after for a, b in flight.frozen(observer.node)):
                     continue

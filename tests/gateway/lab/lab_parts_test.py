@@ -145,6 +145,13 @@ class ExpectationTest(InFolder):
         self.assertTrue(self.judge("uav2 up within 1s after 15s", back("uav215.0")).good)
         self.assertFalse(self.judge("uav2 up within 1s after 15s", back("uav20.0")).good)
 
+    def test_up_from_the_beginning_counts_nodes_that_start_one_after_the_other(self):
+        def started(made):
+            made.all_up(1)
+            for life in made.flight.lives:
+                life.began = 0.2
+        self.assertTrue(self.judge("uav2 up within 3s at ground", started).good)
+
     def test_lost_is_false_only_without_a_fault(self):
         def lost(made):
             made.all_up(1)
