@@ -67,6 +67,9 @@ public:
     void Reserve(double bytesPerSecond);
     void Spent(std::size_t bytes, Duration now) { _budget.Spent(bytes, now); }
     const AirBudget &Budget() const { return _budget; }
+    // True if a datagram of that size may go past the schedule now; SentPast pays for it as for any other.
+    bool MaySend(std::size_t bytes, Duration now) { return _budget.MaySend(bytes, now); }
+    void SentPast(std::size_t bytes, Duration now) { _budget.Sent(bytes, now); }
     // AirBudget::Room
     std::size_t Room(std::size_t most, Duration now) { return _budget.Room(most, now); }
 

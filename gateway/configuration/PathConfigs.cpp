@@ -1,7 +1,9 @@
 #include <rabit/gateway/GatewayConfig.h>
 
+#include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace Rabit
@@ -50,6 +52,23 @@ std::vector<GatewayConfig> PathConfigsOf(const GatewayConfig &config)
         SetLines(path, config.Lines, of.Lines);
     }
     return configs;
+}
+
+void UseInterfaces(const std::vector<std::string> &interfaces, GatewayConfig &config)
+{
+    if (!config.Paths.empty())
+    {
+        const auto names = [&interfaces](const GatewayConfig &path)
+        {
+            return std::find_first_of(path.Interfaces.begin(), path.Interfaces.end(), interfaces.begin(),
+                                      interfaces.end()) != path.Interfaces.end();
+        };
+        std::vector<GatewayConfig> paths = PathConfigsOf(config);
+        const auto fit = std::find_if(paths.begin(), paths.end(), names);
+        config = std::move(fit == paths.end() ? paths.front() : *fit);
+        config.Paths.clear();
+    }
+    config.Interfaces = interfaces;
 }
 
 }  // namespace Rabit

@@ -102,9 +102,17 @@ void AirTraffic::Reported(CapacityEstimate::Peer peer, Duration delay, Duration 
 bool AirTraffic::MayTakeCopy(std::string_view node, std::string_view queue, std::size_t bytes)
 {
     const Duration now = Now();
-    Watch(now);  // pays for the copies before this one
+    Watch(now);  // the bytes before it
     return (queue.empty() || ImportanceOf(_config.Send, node, queue).Class != TrafficClass::Bulk) &&
-           _schedule.Room(bytes, now) >= bytes;
+           _schedule.MaySend(bytes, now);
+}
+
+void AirTraffic::CopySent()
+{
+    const Duration now = Now();
+    const std::size_t bytes = TakeSent();
+    _estimate.Sent(bytes, now);
+    _schedule.SentPast(bytes, now);
 }
 
 std::size_t AirTraffic::TakeSent()

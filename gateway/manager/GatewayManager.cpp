@@ -272,12 +272,15 @@ private:
         _peers.emplace(std::move(tables), _choice);
         if (_paths.size() > 1)
         {
-            _links.SetSecondPath(
-                [this](std::string_view node, std::string_view queue, std::size_t bytes)
-                {
-                    const std::optional<std::size_t> second = _choice.Second(node, Now());
-                    return second && _paths[*second]->MayTakeCopy(node, queue, bytes) ? second : std::nullopt;
-                });
+            _links.SetSecondPath({.Choose =
+                                      [this](std::string_view node, std::string_view queue, std::size_t bytes)
+                                  {
+                                      const std::optional<std::size_t> second = _choice.Second(node, Now());
+                                      return second && _paths[*second]->MayTakeCopy(node, queue, bytes)
+                                                 ? second
+                                                 : std::nullopt;
+                                  },
+                                  .Sent = [this](std::size_t path) { _paths[path]->CopySent(); }});
         }
     }
 
@@ -295,6 +298,13 @@ private:
             {
                 _choice.Heard(peer->Node, path, peer->State, peer->HearsHereFirst, now);
                 ShareOffers(*peer, beats, change);
+            }
+        }
+        if (_paths.size() > 1)
+        {
+            for (const std::string &tool : beats.Peers().HeardTools())
+            {
+                _choice.Heard(tool, path, Gateway::NodeState::UP, false, now);
             }
         }
         if (heard.NewLife)

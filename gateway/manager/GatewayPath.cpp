@@ -32,8 +32,7 @@ GatewayPath::GatewayPath(GatewayConfig config, std::shared_ptr<Rabit::Transport>
       _presence(_config.Node, shared.Incarnation, shared.Workspace.GetClock(), shared.Source, shared.Origins,
                 shared.Remote, shared.Random, shared.IsNeeded, shared.WakeUp,
                 [this](const std::string &node) { return Carries(node); }),
-      _states(_presence, shared.Subscribed, shared.Random,
-              [this](const std::string &node) { return Carries(node); }),
+      _states(_presence, shared.Subscribed, shared.Random),
       _types(_config, _presence, shared.Links, number, shared.WakeUp, shared.OnText, shared.ReportOf),
       _air(_config, shared.Workspace.GetClock(), _presence, shared.Links, _publishers, _types, shared.Choice,
            number)

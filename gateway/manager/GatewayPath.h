@@ -105,6 +105,7 @@ public:
     {
         return _air.MayTakeCopy(node, queue, bytes);
     }
+    void CopySent() { _air.CopySent(); }
 
     // Matches the States of a node with the subscriptions.
     void SetWanted(const PeerTable::Peer &peer, const std::vector<StateRepair::Wanted> &states)

@@ -5,10 +5,8 @@
 namespace Rabit
 {
 
-StateExchange::StateExchange(Presence &presence, const Subscriptions &subscriptions, RandomSource random,
-                             Carries carries)
+StateExchange::StateExchange(Presence &presence, const Subscriptions &subscriptions, RandomSource random)
     : _presence(presence),
-      _carries(std::move(carries)),
       _repair([&subscriptions](const std::string &node, std::uint64_t incarnation, std::size_t subscription)
               { return subscriptions.TakenIn(subscription, node, incarnation); },
               std::move(random))
@@ -85,7 +83,7 @@ void StateExchange::TakeIn(const std::vector<std::string> &told, Duration now)
     {
         const PeerTable::Peer *peer = _presence.Peers().Find(node);
         const auto source = peer == nullptr ? std::nullopt : peer->Clock.Source();
-        if (source && peer->State != Gateway::NodeState::LOST && _carries(node))
+        if (source && peer->State != Gateway::NodeState::LOST)
         {
             _repair.OnTold(node,
                            {.Incarnation = peer->Incarnation,

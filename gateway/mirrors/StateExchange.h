@@ -1,7 +1,6 @@
 #pragma once
 
 #include <rabit/gateway/RandomSource.h>
-#include <functional>
 
 #include <chrono>
 #include <cstddef>
@@ -20,18 +19,14 @@ namespace Rabit
 
 // Carries versions and requests of States between Presence and the mirrors. Announces the versions of this
 // node's States, has a State written again that others request, and requests States that this node lacks
-// (StateRepair). One for each path; a path requests only States of nodes that it carries. Gateway's thread
-// only.
+// (StateRepair). One for each path. Gateway's thread only.
 class StateExchange
 {
 public:
     using Duration = std::chrono::nanoseconds;
 
-    using Carries = std::function<bool(const std::string &node)>;
-
     // References must outlive the object.
-    StateExchange(Presence &presence, const Subscriptions &subscriptions, RandomSource random,
-                  Carries carries);
+    StateExchange(Presence &presence, const Subscriptions &subscriptions, RandomSource random);
 
     // Once all publishers are there, in the order of the announcement.
     void Open(const std::deque<TopicPublisher> &publishers);
@@ -66,7 +61,6 @@ private:
     void Ask(Duration now);
 
     Presence &_presence;
-    const Carries _carries;
     StateRepair _repair;
     std::vector<std::size_t> _states;      // the publisher of the State with that index
     std::vector<std::uint32_t> _versions;  // as told last

@@ -290,6 +290,7 @@ void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
 
 void Presence::Note(const PeerTable::Change &change, const std::string &node, Served &served)
 {
+    served.Change.Beat |= change.Beat;
     served.Change.State |= change.State;
     served.Change.NewLife |= change.NewLife;
     served.Change.Offers |= change.Offers;
@@ -383,12 +384,7 @@ void Presence::NoteDelay(std::string_view node, Duration delay, Duration arrived
 
 void Presence::SetFirstHeard(const std::vector<std::string> &nodes)
 {
-    if (nodes == _firstHeard)
-    {
-        return;
-    }
-    _firstHeard = nodes;
-    std::vector<std::uint32_t> tags;
+    std::vector<std::uint32_t> tags;  // of their present incarnations
     for (const std::string &node : nodes)
     {
         if (const PeerTable::Peer *peer = _peers.Find(node))
@@ -396,8 +392,12 @@ void Presence::SetFirstHeard(const std::vector<std::string> &nodes)
             tags.push_back(peer->Tag);
         }
     }
-    _contents.SetFirstHeard(std::move(tags));
-    _owesNews = true;
+    if (tags != _firstHeard)
+    {
+        _firstHeard = tags;
+        _contents.SetFirstHeard(std::move(tags));
+        _owesNews = true;
+    }
 }
 
 // Both clocks are read at one moment: receivers compute one from the other.

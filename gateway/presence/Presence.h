@@ -210,8 +210,8 @@ private:
     BeatPace _pace;
     BeatContents _contents;
     bool _isTool = false;
-    bool _owesNews = false;  // a large delay, to be reported before the next beat is due
-    std::vector<std::string> _firstHeard;
+    bool _owesNews = false;                  // a large delay, to be reported before the next beat is due
+    std::vector<std::uint32_t> _firstHeard;  // tags
     RecentProblems _otherFormats;
     PresenceInbox _inbox;
 

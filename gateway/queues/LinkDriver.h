@@ -65,9 +65,15 @@ public:
     // Starts to receive by another path, the first one at first, and keeps the session for writing until
     // Close. Throws TransportError.
     void Open(TransportSession &session);
-    // Sets who tells by which path frames for a node go besides the path of SendOne. Before Open.
-    using SecondPath = std::function<std::optional<std::size_t>(std::string_view node, std::string_view queue,
-                                                                std::size_t bytesOnTheAir)>;
+    // Tells by which path a frame for a node goes besides the path of SendOne, and is told when it was sent
+    // there. Before Open.
+    struct SecondPath
+    {
+        std::function<std::optional<std::size_t>(std::string_view node, std::string_view queue,
+                                                 std::size_t bytesOnTheAir)>
+            Choose;
+        std::function<void(std::size_t path)> Sent;
+    };
     void SetSecondPath(SecondPath second) { _second = std::move(second); }
     // Sends nothing more and receives nothing more. Messages without an outcome get one. Cannot be reopened.
     void Close();

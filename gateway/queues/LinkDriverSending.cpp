@@ -67,13 +67,14 @@ void LinkDriver::WriteOut(std::size_t path)
     for (const LinkDatagrams::Datagram &datagram : _sending)
     {
         Write(datagram, writer, sourceTime);
-        if (_second)
+        if (_second.Choose)
         {
             const std::size_t bytes = LinkFrameCodec::EncodedSize(datagram.Frame) + AboutTheHeaders;
-            const std::optional<std::size_t> second = _second(datagram.Destination, datagram.Queue, bytes);
+            const auto second = _second.Choose(datagram.Destination, datagram.Queue, bytes);
             if (second && *second != path)
             {
                 Write(datagram, WriterOf(*second), sourceTime);
+                _second.Sent(*second);
             }
         }
     }

@@ -129,15 +129,14 @@ void TakeFromKeys(const CommonOptions &options, GatewayConfig &config)
 GatewayConfig ConfigOf(const CommonOptions &options)
 {
     GatewayConfig config = LoadNetworkConfig(options.Node);
+    if (!options.Interfaces.empty())
+    {
+        UseInterfaces(options.Interfaces, config);
+    }
     config.Node = options.Node.Node.empty() ? OwnName() : options.Node.Node;
     if (config.Security)
     {
         TakeFromKeys(options, config);
-    }
-    if (!options.Interfaces.empty())
-    {
-        config.Interfaces = options.Interfaces;
-        config.Paths.clear();
     }
     config.StateDir.clear();
     config.Tool.emplace();

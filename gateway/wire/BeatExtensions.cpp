@@ -131,7 +131,7 @@ void Say(Gateway::Beat &beat, const ProblemCount &problems)
 void SayFirstHeard(Gateway::Beat &beat, std::span<const std::uint32_t> tags)
 {
     std::vector<std::uint8_t> bytes;
-    for (const std::uint32_t tag : tags.size() > MostFirstHeard ? std::span<const std::uint32_t>() : tags)
+    for (const std::uint32_t tag : tags.first(std::min(tags.size(), MostFirstHeard)))
     {
         Put(tag, bytes);
     }
@@ -146,7 +146,7 @@ bool IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag)
         {
             continue;
         }
-        bool isHeard = wanted.states.empty();
+        bool isHeard = false;
         std::span<const std::uint8_t> bytes(wanted.states.data(), wanted.states.size());
         while (bytes.size() >= sizeof(tag))
         {

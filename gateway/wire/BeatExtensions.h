@@ -25,7 +25,7 @@ inline constexpr std::uint16_t Problems =
     5;  // ProblemCount of the sender, in Wanted::states; none: no problem
 
 // The tags of nodes that the sender hears by this path and by no better one (gateway/paths), in
-// Wanted::states; no tag: all nodes.
+// Wanted::states.
 inline constexpr std::uint16_t FirstHeardHere = 6;
 
 // Bytes of Wanted::states.
@@ -34,8 +34,8 @@ inline constexpr std::size_t StrainBytes = 8;  // of each
 inline constexpr std::size_t ProblemBytes = 6;
 // Most strains that are read from one beat.
 inline constexpr std::size_t MostStrains = 4;
-// Most tags in FirstHeardHere; if there are more, all nodes are meant.
-inline constexpr std::size_t MostFirstHeard = 16;
+// Most tags in FirstHeardHere; further nodes are not told.
+inline constexpr std::size_t MostFirstHeard = 32;
 
 // The sender lacks the text of a type that a node has announced.
 struct TypeQuestion

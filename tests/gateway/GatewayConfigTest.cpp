@@ -280,6 +280,23 @@ TEST_F(GatewayConfigTest, WithoutPathsThereIsOneWithTheSettingsOfTheGateway)
     EXPECT_EQ(paths[0].Interfaces, std::vector<std::string>{"eth0"});
 }
 
+TEST_F(GatewayConfigTest, OtherInterfacesKeepTheKeysAndTheBudgetOfThePathThatNamesThem)
+{
+    const std::string yaml =
+        "node: a\npaths:\n  - {name: mesh, interfaces: [wlan0], security: {keys: k1}}\n"
+        "  - {name: modem, interfaces: [ppp0], radio: {budget: 1500B/s}, security: {keys: k2}}\n";
+    GatewayConfig modem = Load(yaml);
+    UseInterfaces({"ppp0"}, modem);
+    EXPECT_TRUE(modem.Paths.empty());
+    EXPECT_EQ(modem.Interfaces, std::vector<std::string>{"ppp0"});
+    EXPECT_EQ(modem.Security->Keys, "k2");
+    EXPECT_EQ(modem.Radio.Budget, 1500.0);
+    GatewayConfig other = Load(yaml);
+    UseInterfaces({"lo"}, other);
+    EXPECT_EQ(other.Interfaces, std::vector<std::string>{"lo"});
+    EXPECT_EQ(other.Security->Keys, "k1");
+}
+
 TEST_F(GatewayConfigTest, MistakesInPathsNameTheirLine)
 {
     EXPECT_EQ(ErrorOf("node: a\npaths:\n  - {interfaces: [wlan0]}\n"),

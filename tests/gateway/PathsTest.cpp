@@ -327,6 +327,59 @@ TEST_F(PathsTest, TheBudgetOfTheModemHoldsWhileItCarriesEverything)
     EXPECT_EQ(StateAtGround(), "UP");
 }
 
+TEST_F(PathsTest, AStateThatIsLostWhileTheEndsChoseDifferentPathsComes)
+{
+    AddBoth();
+    RunFor(3s);
+    Cut(mesh, true);
+    RunFor(3s);
+    Cut(mesh, false);
+    RunFor(700ms);  // the aircraft is back on the mesh or about to be, the ground station rests it
+    mesh.SetFaults("uav1", "ground", {.Loss = 0.9, .Delay = 1ms});
+    missions["uav1"]->commands = 7;
+    missions["uav1"]->PostMessage();
+    RunFor(100ms);
+    mesh.SetFaults("uav1", "ground", {.Delay = 1ms});
+    RunFor(700ms);
+    Uav::MissionState state;
+    processes["ground"]->Workspace.ForceFetchMessage("uav1/MissionState", &state);
+    EXPECT_EQ(state.commands, 7U);
+}
+
+TEST_F(PathsTest, AnAircraftThatStartsAgainWhileItIsHeardByTheModemAloneIsHeardAgain)
+{
+    AddBoth();
+    RunFor(3s);
+    mesh.SetFaults("uav1", "ground", {.Cut = true});
+    RunFor(4s);
+    processes["uav1"]->Reactor.Stop();
+    processes.erase("uav1");
+    Add("uav1", OverBoth(AircraftConfig("uav1")), "MissionControl");
+    RunFor(5s);
+    EXPECT_EQ(StateAtGround(), "UP");
+    EXPECT_LT(AgeAtGround(), 0.3);
+}
+
+TEST_F(PathsTest, AToolThatHearsOnlyTheModemIsServedThere)
+{
+    GatewayConfig tool = GroundConfig();
+    tool.Node = "rabit.laptop";
+    tool.Accept.clear();
+    tool.Tool.emplace();
+    tool.Paths.push_back({.Name = "modem"});
+    Add("uav1", OverBoth(AircraftConfig("uav1")), "MissionControl");
+    Add("rabit.laptop", tool, "Commands");
+    RunFor(3s);
+    Uav::Pose pose;
+    processes["rabit.laptop"]->Workspace.ForceFetchMessage("uav1/Pose", &pose);
+    EXPECT_LT(pose.GetAgeSeconds(*clock), 0.3);
+    auto command = std::make_shared<Uav::Goto>();
+    command->id = 1;
+    EXPECT_TRUE(processes["rabit.laptop"]->Workspace.AddMessageToQueue("uav1/MissionControl", command));
+    RunFor(1s);
+    EXPECT_EQ(got, 1);
+}
+
 // Faults of both networks at random: cut in one direction or both, lossy, slow, reordering.
 class PathsUnderFaults : public PathsTest, public ::testing::WithParamInterface<int>
 {

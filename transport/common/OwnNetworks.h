@@ -12,26 +12,23 @@
 namespace Rabit
 {
 
-// Tells whether a datagram to a multicast group came by one of the interfaces that a session uses. Linux
-// gives such a datagram to every socket of the group's port, if any socket of the host has joined the group
-// on the interface by which it came (IP_MULTICAST_ALL, ip(7)). Two sessions on two interfaces of one host
-// would hear the networks of both.
+// Tells whether a datagram to a multicast group came by an interface that a session does not use. Linux gives
+// such a datagram to every socket of the group's port, if any socket of the host has joined the group on the
+// interface by which it came (IP_MULTICAST_ALL, ip(7)). Two sessions on two interfaces of one host would hear
+// the networks of both. Datagrams of other networks may come: routers carry groups, too.
 class OwnNetworks
 {
 public:
-    // `addresses`: of the interfaces that were named; empty: all are used. Everything may come by an interface
-    // whose mask tells no neighbours, as that of a modem.
+    // `addresses`: of the interfaces that were named; empty: all are used.
     OwnNetworks(const std::vector<std::string> &addresses, const std::vector<HostNetwork> &all)
     {
-        constexpr std::uint32_t alone = 0xffffffff;
         for (const HostNetwork &network : all)
         {
             const bool isNamed =
                 std::find(addresses.begin(), addresses.end(), network.Address) != addresses.end();
-            if (isNamed && network.Number())
+            if (!addresses.empty() && network.Number())
             {
-                const std::uint32_t mask = network.Mask == alone ? 0 : network.Mask;
-                _networks.emplace_back(*network.Number() & mask, mask);
+                (isNamed ? _own : _others).emplace_back(*network.Number() & network.Mask, network.Mask);
             }
         }
     }
@@ -40,13 +37,21 @@ public:
     {
         const std::uint32_t address = std::uint32_t{host[0]} << 24 | std::uint32_t{host[1]} << 16 |
                                       std::uint32_t{host[2]} << 8 | std::uint32_t{host[3]};
-        return _networks.empty() || std::any_of(_networks.begin(), _networks.end(),
-                                                [address](const auto &network)
-                                                { return (address & network.second) == network.first; });
+        return !Has(_others, address) || Has(_own, address);
     }
 
 private:
-    std::vector<std::pair<std::uint32_t, std::uint32_t>> _networks;  // number and mask, in host order
+    using Networks = std::vector<std::pair<std::uint32_t, std::uint32_t>>;  // number and mask, in host order
+
+    static bool Has(const Networks &networks, std::uint32_t address)
+    {
+        return std::any_of(networks.begin(), networks.end(),
+                           [address](const auto &network)
+                           { return (address & network.second) == network.first; });
+    }
+
+    Networks _own;
+    Networks _others;
 };
 
 }  // namespace Rabit

@@ -82,8 +82,7 @@ GatewayConfig LoadNodeConfig(const NodeOptions &options)
     GatewayConfig config = LoadGatewayConfig(options.ConfigFile, options.Node);
     if (!options.Interfaces.empty())
     {
-        config.Interfaces = options.Interfaces;
-        config.Paths.clear();
+        UseInterfaces(options.Interfaces, config);
     }
     if (!options.Record.empty())
     {

@@ -261,6 +261,10 @@ struct GatewayConfig
 // alone under Paths. Of a gateway without Paths its own.
 std::vector<GatewayConfig> PathConfigsOf(const GatewayConfig &config);
 
+// Has the gateway use these interfaces alone, in place of those of the configuration. Of several paths one
+// remains, with its keys, budget and peers: the first that names one of the interfaces, else the first.
+void UseInterfaces(const std::vector<std::string> &interfaces, GatewayConfig &config);
+
 // Checks ranges, names used twice, entries that contradict each other or are never used, and that every type
 // is linked into this process. Throws ConfigError. The constructor of GatewayManager calls it; call it
 // earlier to fail earlier.
