@@ -6,6 +6,7 @@
 #include <rabit/base/Fnv1a.h>
 #include <rabit/base/LittleEndian.h>
 #include <rabit/base/NumberIn.h>
+#include <rabit/base/Printable.h>
 #include <rabit/base/UtcText.h>
 
 #include <chrono>
@@ -51,5 +52,13 @@ TEST(BaseExample, NumbersAndBytes)
     RABIT_ASSERT(bytes.size() == 4);
 }
 // [/bytes]
+
+// [printable]
+TEST(BaseExample, TextOfTheNetworkStaysOneLineOfALog)
+{
+    EXPECT_EQ(Rabit::Printable("uav1\nroot: all is well\x1b[2J"), "uav1?root: all is well?[2J");
+    EXPECT_EQ(Rabit::Printable("a name that is too long", 9), "a name...");
+}
+// [/printable]
 
 }  // namespace

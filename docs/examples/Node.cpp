@@ -8,9 +8,15 @@
 #include <rabit/node/NodeOptions.h>
 #include <rabit/node/RunNode.h>
 #include <rabit/node/RunProgram.h>
+#include <rabit/node/TcpServer.h>
 #include <rabit/testing/SimulatedFleet.h>
 
 #include <CLI/CLI.hpp>
+
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/write.hpp>
 
 #include <chrono>
 #include <filesystem>
@@ -194,5 +200,23 @@ TEST(NodeFleetExample, AManagerSeesTheOthersAndTheirValues)
     EXPECT_EQ(formation->Near, 1);
     EXPECT_TRUE(watch->IsAlone);  // there is no ground
 }
+
+// [server]
+TEST(ServerExample, AServerGreetsEachConnection)
+{
+    using boost::asio::ip::tcp;
+    Rabit::TcpServer server(tcp::endpoint(boost::asio::ip::address_v4::loopback(), 0));
+    server.Start("greeter", [](tcp::socket socket)
+                 { boost::asio::write(socket, boost::asio::buffer(std::string("hello\n"))); });
+
+    boost::asio::io_context io;
+    tcp::socket viewer(io);
+    viewer.connect(server.Address());
+    std::string line;
+    boost::system::error_code end;
+    boost::asio::read(viewer, boost::asio::dynamic_buffer(line), end);
+    EXPECT_EQ(line, "hello\n");
+}
+// [/server]
 
 }  // namespace

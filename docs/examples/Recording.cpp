@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 #include <rabit/ManualClock.h>
 #include <rabit/RabitManager.h>
+#include <rabit/RabitReactor.h>
 #include <rabit/RabitSteppedReactor.h>
+#include <rabit/backfill/BackfillManager.h>
 #include <rabit/recording/ManagerRerun.h>
 #include <rabit/recording/RecorderManager.h>
 
@@ -69,6 +71,32 @@ std::vector<std::string> RecordInto(const std::string &folder)
     return files;
 }
 // [/record]
+
+// [backfill]
+// For a program that makes its managers by hand: RunNode does the same.
+void AddRecorder(Rabit::GatewayConfig &config, Rabit::RabitReactor &reactor)
+{
+    Rabit::RecorderManager *recorder = nullptr;
+    if (config.Record)
+    {
+        auto made = std::make_unique<Rabit::RecorderManager>(config);
+        recorder = made.get();
+        reactor.AddManager(std::move(made));
+    }
+    if (Rabit::BackfillManager::IsUsed(config))
+    {
+        reactor.AddManager(std::make_unique<Rabit::BackfillManager>(config, recorder));  // before the gateway
+    }
+}
+// [/backfill]
+
+TEST(RecordingExample, ANodeWithNothingToRecordNeedsNoManagerForIt)
+{
+    Rabit::GatewayConfig config;
+    Rabit::RabitReactor reactor;
+    AddRecorder(config, reactor);
+    EXPECT_FALSE(Rabit::BackfillManager::IsUsed(config));
+}
 
 // [rerun]
 TEST(RecordingExample, AManagerThatIsChangedDiffersFromItsRecording)

@@ -3,11 +3,13 @@
 #include <rabit/ManualClock.h>
 #include <rabit/RabitManager.h>
 #include <rabit/RabitSteppedReactor.h>
+#include <rabit/testing/Lab.h>
 #include <rabit/testing/SimulatedFleet.h>
 
 #include <chrono>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include "uav.idl.h"
 
@@ -114,5 +116,21 @@ TEST(FleetTest, AnIdleManagerKeepsWhatOthersSend)
     EXPECT_EQ(mission->GetManagerMessageQueue()->NoMessagesInQueue(), 1);
 }
 // [/idle]
+
+// [lab]
+// Whole processes over an emulated radio, in real time.
+Rabit::LabResult FlyInTheLab(const std::string &program, const std::string &scenario,
+                             const std::string &folder)
+{
+    const Rabit::LabResult flight = Rabit::Lab(program).Run(scenario, folder);
+    EXPECT_TRUE(flight || flight.IsImpossible()) << flight;
+    return flight;
+}
+// [/lab]
+
+TEST(LabExample, AProgramThatIsNotThereCannotFly)
+{
+    EXPECT_THROW(FlyInTheLab("/nowhere/rabit", "flight.yaml", "flight"), std::system_error);
+}
 
 }  // namespace
