@@ -1,9 +1,10 @@
-"""Nodes in containers: the files of an image around a node, and a container's network namespace in place of the lab's own. The
-node's process is still the lab's, so that it is started, frozen and killed like any other."""
+"""Nodes in containers. One container of each node holds its network and its namespace of processes for the whole run. Each
+life of the node is a command in it by `docker exec`: with the user, the rights and the limits that Docker gives."""
 
 import json
 import os
 import shutil
+import signal
 import subprocess
 
 from rabit_lab import processes
@@ -15,12 +16,14 @@ START_S = 60
 
 class Containers(Spaces):
     """Spaces of a fleet in which some nodes have an image. A container lives as long as its standard input, which ends with
-    this process, also by SIGKILL."""
+    this process, also by SIGKILL; and all processes in it end with it. Nodes write to the folder `results`, and read the
+    folders `readable`. All containers of the run have `label`."""
 
-    def __init__(self, scenario, folders):
+    def __init__(self, scenario, results, readable, label):
         if os.geteuid() != 0 or not shutil.which("docker"):
             raise Unsupported("nodes with an `image` need root and Docker; docker/packages-docker.txt lists what to install")
-        self._scenario, self._folders = scenario, folders
+        self._scenario, self._label = scenario, label
+        self._mounts = [f"{results}:{results}", *(f"{path}:{path}:ro" for path in sorted(readable - {str(results)}))]
         self._holders = {}  # node -> Process
         self._pids = {}
         self._images = {}
@@ -35,12 +38,15 @@ class Containers(Spaces):
             super().make(node)
             return
         self._images[node] = json.loads(run("docker", "image", "inspect", image))[0]["Config"]
-        name = f"rabit-lab-{os.getpid()}-{node}"
-        mounts = [word for folder in self._folders for word in ("--volume", f"{folder}:{folder}")]
+        name = self._name(node)
+        mounts = [word for mount in self._mounts for word in ("--volume", mount)]
         self._holders[node] = processes.Process(["docker", "run", "--rm", "--interactive", "--network", "none", "--name", name,
-                                                 *mounts, "--entrypoint", "cat", image])
+                                                 "--label", self._label, *mounts, "--entrypoint", "cat", image])
         self._pids[node] = processes.until(lambda: self._pid_of(name, node), START_S)
         self.ip(node, "link", "set", "lo", "up")
+
+    def _name(self, node):
+        return f"{self._label}-{node}"
 
     def _pid_of(self, name, node):
         if not self._holders[node].running():
@@ -59,15 +65,26 @@ class Containers(Spaces):
         return ["nsenter", "--target", str(self._pids[node]), "--net", *argv]
 
     def start(self, node, argv, environment):
-        """The command of a node, with the files and the environment of its image."""
+        """The command of a node, in its container."""
         if node not in self._pids:
             return super().start(node, argv, environment)
         image = self._images[node]
         argv = argv or [*(image.get("Entrypoint") or []), *(image.get("Cmd") or [])]
-        words = dict(pair.split("=", 1) for pair in image.get("Env") or [] if "=" in pair)
-        folder = image.get("WorkingDir") or "/"
-        return (["nsenter", "--target", str(self._pids[node]), "--net", "--mount", "--uts", "--ipc", "--root", f"--wd={folder}",
-                 "env", *(f"{key}={value}" for key, value in {**words, **environment}.items()), *argv], {})
+        words = [word for pair in environment.items() for word in ("--env", "=".join(pair))]
+        return ["docker", "exec", "--interactive", *words, self._name(node), *argv], {}
+
+    def signal(self, node, process, number):
+        """To all processes of the container but its first, which holds it."""
+        if node not in self._pids:
+            super().signal(node, process, number)
+            return
+        subprocess.run(["nsenter", "--target", str(self._pids[node]), "--pid", "sh", "-c", f"kill -{int(number)} -1"],
+                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+
+    def ended(self, node):
+        """Its children end, too."""
+        if node in self._pids:
+            self.signal(node, None, signal.SIGKILL)
 
     def ip(self, node, *argv):
         if node in self._pids:
@@ -83,3 +100,11 @@ class Containers(Spaces):
                 holder.exit_code(20)
             except subprocess.TimeoutExpired:
                 holder.kill()
+
+
+def remove(label):
+    """The containers of a run that was ended while they were made, and so were never started."""
+    left = subprocess.run(["docker", "ps", "--all", "--quiet", "--filter", f"label={label}"], text=True, check=False,
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL).stdout.split()
+    if left:
+        subprocess.run(["docker", "rm", "--force", *left], check=False, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

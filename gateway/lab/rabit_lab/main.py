@@ -3,6 +3,7 @@
 import argparse
 import datetime
 import pathlib
+import secrets
 import shutil
 import sys
 
@@ -36,19 +37,22 @@ def run(options):
     has_images = len(bare) < len(scenario.nodes)
     found = tools.find()
     folder = folder_for(scenario, options.to)
+    label = f"rabit-lab-{secrets.token_hex(4)}" if has_images else None
     code = IMPOSSIBLE
     try:
-        code = cage.run(lambda: fly(scenario, folder, found, has_images), own_processes=not has_images)
+        code = cage.run(lambda: fly(scenario, folder, found, label), own_processes=not has_images)
     finally:
+        if label and shutil.which("docker"):
+            containers.remove(label)
         if code == IMPOSSIBLE:
             shutil.rmtree(folder, ignore_errors=True)
     return code
 
 
-def fly(scenario, folder, found, has_images):
-    """In the cage. Returns the exit code."""
-    folders = [folder, scenario.folder, pathlib.Path(found.stepped_clock).parent]
-    spaces = containers.Containers(scenario, sorted(set(map(str, folders)))) if has_images else network.Spaces()
+def fly(scenario, folder, found, label):
+    """In the cage. `label`: of the containers, if nodes have images. Returns the exit code."""
+    readable = {str(scenario.folder), str(pathlib.Path(found.stepped_clock).parent)}
+    spaces = containers.Containers(scenario, folder, readable, label) if label else network.Spaces()
     verdicts = runner.Runner(scenario, folder, found, spaces).run()
     if verdicts is None:
         print(f"interrupted; {folder}/report.html has what was seen")

@@ -33,8 +33,21 @@ class Spaces:
         return ["ip", "netns", "exec", node, *argv]
 
     def start(self, node, argv, environment):
-        """The command of a node, and its environment."""
-        return self.inside(node, argv), environment
+        """The command of a node, and its environment. The node has a namespace of processes for itself, so that all its
+        children end with it. Process 1 is a shell: a node in its place would ignore the signals that it does not handle."""
+        own = ["unshare", "--pid", "--fork", "--kill-child", "--mount-proc", "sh", "-c", '"$@"; exit $?', "sh"]
+        return self.inside(node, own + argv), environment
+
+    def signal(self, node, process, number):  # pylint: disable=unused-argument
+        """To the node and its children, but for those with a session of their own. SIGKILL reaches these, too, because it
+        ends process 1. `unshare` blocks SIGTERM, so that its exit code is the node's."""
+        try:
+            os.killpg(process.pid, number)
+        except ProcessLookupError:
+            pass
+
+    def ended(self, node):
+        """After a node has ended: the kernel has ended its children."""
 
     def ip(self, node, *argv):
         run("ip", "-n", node, *argv)

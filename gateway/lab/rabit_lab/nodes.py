@@ -9,6 +9,7 @@ import subprocess
 from rabit_lab import cage, flight as flights, network as networks, processes
 
 STOP_S = 10  # for a node to end on SIGTERM
+KILL_S = 5  # for the kernel to end it
 DISK_BYTES = 4 << 30  # nominal; it takes memory only for what is in it
 LAST_LINES = 20
 
@@ -69,6 +70,9 @@ class Nodes:
         life = flights.Life(name, number, self.now(), self._steps.get(name, 0))
         records = self.records(name, number)
         records.mkdir(parents=True)
+        if node.image:  # its user is seldom the lab's
+            for folder in (records, self.disk(name)):
+                folder.chmod(0o777)
         env = {"RABIT_NODE_RECORD": str(records), "RABIT_NODE_INTERFACE": ",".join(self._nets.addresses(name)),
                "RABIT_LAB_DISK": str(self.disk(name)), **node.env}
         if name in self._stepped:
@@ -122,21 +126,27 @@ class Nodes:
 
     def _ended(self, name, by, code):
         index, _ = self._running.pop(name)
+        self._nets.spaces.ended(name)
         life = self._flight.lives[index]
         life.ended, life.by, life.code = self.now(), by, code
 
     def signal(self, name, number):
         """To the node and its children."""
         if self.is_running(name):
-            try:
-                os.killpg(self._running[name][1].pid, number)
-            except ProcessLookupError:
-                pass
+            self._nets.spaces.signal(name, self._running[name][1], number)
 
     def kill(self, name):
         if self.is_running(name):
-            self.signal(name, signal.SIGKILL)
-            self._ended(name, "kill", self._running[name][1].kill())
+            self._ended(name, "kill", self._kill(name))
+
+    def _kill(self, name):
+        """The exit code, once the node and its children have closed their output and so their sockets."""
+        process = self._running[name][1]
+        self.signal(name, signal.SIGKILL)
+        try:
+            return process.exit_code(KILL_S)
+        except subprocess.TimeoutExpired:
+            return process.kill()
 
     def stop(self, names, by="stop"):
         """SIGTERM to all of them at once; their exit codes."""
@@ -150,8 +160,7 @@ class Nodes:
             try:
                 code = process.exit_code(max(end - self.now(), 0.1))
             except subprocess.TimeoutExpired:
-                self.signal(name, signal.SIGKILL)
-                process.kill()
+                self._kill(name)
                 code = None
             self._ended(name, by, code)
 

@@ -20,33 +20,37 @@ ROOT = pathlib.Path(__file__).resolve().parents[3]
 SKIPPED = 77
 IMPOSSIBLE = 3
 LIMIT_S = 150  # only keeps a broken run from hanging the test
+DISTURBED = ("the machine stood still", "the emulated channel was late")  # notes of a run
 
 NODES = """nodes:
   uav*: {count: COUNT, command: [UAV, --config, CONFIG, --node, "{node}"]}
 """
 
 LAN = """  writer: {command: [sh, -c, "while :; do if head -c 9000 /dev/zero >> {disk}/file; then echo written; else echo no room; fi; sleep 0.5; done"], plain: true}
-run: 21s
+  family: {command: [sh, -c, "setsid sh -c 'while :; do echo child; sleep 0.1; done' & sleep 999"], plain: true}
+run: 36s
 events:
-  - {at: 5s, kill: uav2}
-  - {at: 5s, freeze: uav3, for: 5s}
-  - {at: 6s, disk: {node: writer, full: true}, for: 5s}
-  - {at: 10s, start: uav2}
-  - {at: 13s, clock: {node: uav1, step: -10min}}
-  - {at: 14s, cut: [uav1], for: 5s}
-  - {at: 8s, send: uav1/MissionControl, type: "Uav::GoHome", value: {reason: low battery}, from: uav4, expect: delivered within 3s}
+  - {at: 10s, kill: uav2}
+  - {at: 10s, kill: family}
+  - {at: 10s, freeze: uav3, for: 6s}
+  - {at: 11s, disk: {node: writer, full: true}, for: 6s}
+  - {at: 16s, start: uav2}
+  - {at: 21s, clock: {node: uav1, step: -10min}}
+  - {at: 22s, cut: [uav1], for: 6s}
+  - {at: 12s, send: uav1/MissionControl, type: "Uav::GoHome", value: {reason: low battery}, from: uav4, expect: delivered within 6s}
 expect:
-  - all up within 4s
-  - uav2 lost within 5s after 5s
-  - uav2 up within 4s after 10s
-  - uav3 lost within 5s after 5s
-  - uav3 up within 3s after 10s
-  - uav1 lost within 5s after 14s
-  - uav1 up within 2s after 19s
-  - "uav4/Pose at uav1: age p90 < 0.5s, after 2s, before 14s"
-  - writer says written within 4s after 1s
-  - writer says no room within 4s after 7s
-  - writer says written within 4s after 11s
+  - all up within 9s
+  - family says child within 8s after 0s
+  - uav2 lost within 6s after 10s
+  - uav2 up within 6s after 16s
+  - uav3 lost within 6s after 10s
+  - uav3 up within 6s after 16s
+  - uav1 lost within 6s after 22s
+  - uav1 up within 6s after 28s
+  - "uav4/Pose at uav1: age p90 < 0.5s, after 2s, before 22s"
+  - writer says written within 8s after 1s
+  - writer says no room within 5s after 12s
+  - writer says written within 8s after 17s
   - no false lost
 """
 
@@ -110,9 +114,9 @@ REASONS = [
 ]
 
 
-SMALL = """run: 5s
+SMALL = """run: 10s
 expect:
-  - all up within 4s
+  - all up within 9s
 """
 # A user without root, on a machine where users may open this device, as Debian has it.
 AS_USER = ["unshare", "--mount", "sh", "-c", "mount -t tmpfs none /dev/net && mknod -m 666 /dev/net/tun c 10 200 && exec setpriv "
@@ -142,6 +146,13 @@ class Case:
                               timeout=LIMIT_S, check=False)
         self.code, self.said = done.returncode, done.stdout
 
+    def repeat_if_disturbed(self):
+        """Once more, and alone, if it failed while the machine was too busy for it, as its notes say."""
+        if self.code == 1 and any(words in (self.results / "junit.xml").read_text(encoding="utf-8") for words in DISTURBED):
+            print(f"{self.folder.name}: once more, since the machine was late:\n{self.said}")
+            shutil.rmtree(self.results)
+            self.run()
+
     def verdicts(self):
         """{expectation: reason of its failure, or none}"""
         suite = ElementTree.parse(self.results / "junit.xml").getroot()
@@ -160,6 +171,13 @@ def check_passed(case):
     for name in ("report.html", "junit.xml", "log.txt", "radio.json", "flight.mcap", "plots/states.svg", "logs/uav1.log"):
         check((case.results / name).stat().st_size > 0, case, f"no {name}")
     print(f"ok: {case.folder.name}: all {len(case.verdicts())} expectations met")
+
+
+def check_lan(case):
+    check_passed(case)
+    lines = (case.results / "log.txt").read_text(encoding="utf-8").splitlines()
+    family = [line.split(None, 3)[2:] for line in lines if " family " in line]
+    check(family[-1][0] == "lab" and "ended with" in family[-1][1], case, f"a killed node's child goes on: {family[-3:]}")
 
 
 def check_failed(case):
@@ -233,7 +251,9 @@ def main():
         if lan.code == IMPOSSIBLE:
             print(f"skipped: {lan.said}")
             sys.exit(SKIPPED)
-        check_passed(lan)
+        for case in (lan, radio, user):
+            case.repeat_if_disturbed()
+        check_lan(lan)
         check_radio(radio)
         check_failed(failing)
         check_passed(user)
