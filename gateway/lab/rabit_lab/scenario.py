@@ -231,7 +231,7 @@ class Reader:
 
     def _read_node(self, name, value, line):
         image = self.text(value, "image")
-        command = value.get("command", [] if image else None)
+        command = value.get("command", marked.List() if image else None)
         at = value.line_of("command")
         if command is None:
             self.fail(line, f"node {name} has no `command`")
@@ -371,6 +371,9 @@ class Reader:
             if "node" not in argument:
                 self.fail(where, f"{verb}: `node` is missing")
             values["nodes"] = self.names(argument["node"], argument.line_of("node"))
+            contained = [name for name in values["nodes"] if self.nodes[name].image]
+            if verb == "disk" and contained:
+                self.fail(where, f"disk: node {contained[0]} has an image; its container does not see what the lab mounts")
             if verb == "clock":
                 if "step" not in argument:
                     self.fail(where, "clock: `step` is missing, as -10min")

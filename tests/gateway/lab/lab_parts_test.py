@@ -52,6 +52,13 @@ class ScenarioTest(InFolder):
         radio = self.read("network:\n  radio: {rate: 250kbit/s, loss: 10%, burst: 4, delay: 20ms, queue: 16kB}\n").networks["radio"]
         self.assertEqual((radio.rate, radio.loss, radio.burst, radio.delay, radio.queue), (250000, 10, 4, 0.02, 16000))
 
+    def test_a_node_with_an_image_needs_no_command(self):
+        self.assertEqual(self.read(fleet="nodes:\n  uav: {image: debian}\n").nodes["uav"].command, [])
+
+    def test_a_full_disk_is_refused_for_a_node_with_an_image(self):
+        self.refused(4, "has an image", "events:\n  - {at: 1s, disk: {node: uav, full: true}}\n",
+                     "nodes:\n  uav: {image: debian}\n")
+
     def test_a_mistake_is_named_with_its_line(self):
         cases = [
             (4, "did you mean `network`", "netwrk: {}\n"),
