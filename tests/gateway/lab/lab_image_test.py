@@ -68,7 +68,8 @@ def main():
     image = f"rabit-lab-test:{os.getpid()}"
     try:
         make_image(folder / "image", image)
-        case = Case(folder, "guest", SCENARIO.replace("IMAGE", f'"{image}"').replace("FOLDER", str(folder / "guest")), 1, rabit, uav)
+        scenario = SCENARIO.replace("IMAGE", f'"{image}"').replace("FOLDER", str(folder / "guest"))
+        case = Case(folder, "guest", scenario, 1, rabit, uav)
         case.run()
         check_passed(case)
         lives = [line.split(None, 3)[2:] for line in (case.results / "log.txt").read_text(encoding="utf-8").splitlines()
