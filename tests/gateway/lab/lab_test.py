@@ -92,14 +92,14 @@ TRACK = """time_s,node,x,y,z
 22,uav4,0,0,50
 """
 
-FAILING = """  quitter: {command: [sh, -c, "sleep 3; echo out of fuel; exit 5"], plain: true}
-run: 14s
+FAILING = """  quitter: {command: [sh, -c, "sleep 8; echo out of fuel; exit 5"], plain: true}
+run: 19s
 events:
-  - {at: 3s, kill: uav2}
-  - {at: 6s, send: uav2/MissionControl, type: "Uav::GoHome", from: uav1, expect: delivered within 2s}
+  - {at: 8s, kill: uav2}
+  - {at: 11s, send: uav2/MissionControl, type: "Uav::GoHome", from: uav1, expect: delivered within 2s}
 expect:
   - all up within 0.001s
-  - uav2 up within 2s after 8s
+  - uav2 up within 2s after 13s
   - "uav2/Pose at uav1: age p90 < 0.5s"
   - uav1 says nothing of the kind
 """
@@ -107,8 +107,8 @@ REASONS = [
     ("no node ends by itself", "quitter ended by itself with 5"),
     ("no node ends by itself", "out of fuel"),
     ("all up within 0.001s", "UP after"),
-    ("uav2 up within 2s after 8s", "uav1 had uav2 LOST"),
-    ("uav2/Pose at uav1", "`kill uav2` was at 3 s"),
+    ("uav2 up within 2s after 13s", "uav1 had uav2 LOST"),
+    ("uav2/Pose at uav1", "`kill uav2` was at 8 s"),
     ("uav1 says", "uav1 did not"),
     ("Uav::GoHome to uav2/MissionControl", "no outcome"),
 ]
