@@ -198,6 +198,7 @@ void KeyExchangeOutbox::Take(const Choice &choice, TimePoint now, std::vector<Da
                       if (!isWhole)  // the signature of a whole message covers its end
                       {
                           StampFor(choice.Of, now).AppendTo(datagram.Bytes);
+                          peer.StampedAt = peer.StampedAt.value_or(now);
                       }
                       size += datagram.Bytes.size() + Headers;
                   });

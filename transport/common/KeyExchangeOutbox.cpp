@@ -144,7 +144,21 @@ bool KeyExchangeOutbox::Put(std::span<const std::uint8_t> datagram, const KeyExc
 
 void KeyExchangeOutbox::Exchanged(Peer &peer, TimePoint now)
 {
+    ForgetAnswersIfSettled(now);
+    if (now - peer.ExchangedAt >= Settled)
+    {
+        peer.StampedAt.reset();
+    }
     peer.ExchangedAt = _exchangedAt = now;
+}
+
+void KeyExchangeOutbox::ForgetAnswersIfSettled(TimePoint now)
+{
+    if (now - _exchangedAt >= Settled)
+    {
+        _answerTime.reset();
+        _window = FirstWindow;
+    }
 }
 
 bool KeyExchangeOutbox::IsHeld(const KeyExchange &what, TimePoint now) const
@@ -235,13 +249,14 @@ bool KeyExchangeOutbox::Received(const KeyExchange &what, TimePoint now)
                                .Datagrams = peer.SaidFinal,
                                .Since = now,
                                .PutAt = now,
-                               .Due = now + FinalDelay,
+                               .Due = std::max(now + FinalDelay, peer.SaidAgainAt),
                                .Place = ++_turn};
     }
     if (Answers(peer.Said, what.What))
     {
         peer.HandshakeAt = what.IsHandshake() && !what.IsWhole ? now : peer.HandshakeAt;
-        peer.Gap = Duration(0);
+        // Nothing answers the last message.
+        peer.Gap = peer.Said == Step::Final ? peer.Gap : Duration(0);
         Settle(peer);
     }
     if (what.What == Step::Keys)
@@ -266,7 +281,9 @@ void KeyExchangeOutbox::Stamped(const KeyExchange::Prefix &from, const KeyExchan
 {
     _heard.Put(from, {stamp.SentAt, now});
     const Milliseconds took(StampFor(from, now).SentAt - stamp.Echo);
-    if (stamp.Echo == 0 || took > LongestAnswer)
+    const auto peer = _peers.find(from);
+    if (stamp.Echo == 0 || took > LongestAnswer || peer == _peers.end() || !peer->second.StampedAt ||
+        now - peer->second.ExchangedAt >= Settled || took > now - *peer->second.StampedAt + Rounding)
     {
         return;
     }
@@ -293,6 +310,7 @@ void KeyExchangeOutbox::Lower(TimePoint now)
 
 void KeyExchangeOutbox::Expire(TimePoint now)
 {
+    ForgetAnswersIfSettled(now);
     for (auto &[name, peer] : _peers)
     {
         if (peer.Unanswered > 0 && peer.UnansweredUntil <= now)

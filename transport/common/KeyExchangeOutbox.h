@@ -47,7 +47,7 @@ namespace Rabit
 //   Otherwise they are sent unchanged.
 // - The last message of a handshake answers the peer's certificate (Step::Reply), each time that it comes.
 //   It goes FinalDelay after the certificate: Fast DDS does not listen while it sends its certificate, and
-//   never a second time to the same message.
+//   never a second time to the same message. Its repetitions have intervals as those of other messages.
 // - Datagrams of idle endpoints are dropped: the vendors would request data from each other that never comes.
 // - A rate limits all of this, if one is set.
 //
@@ -69,6 +69,8 @@ public:
     static constexpr Milliseconds Late{1000};
     // Longer answer times, and stamps that came longer ago, are not taken for true.
     static constexpr Milliseconds LongestAnswer{20000};
+    // An answer time consists of times that three clock readings have cut to whole milliseconds.
+    static constexpr Milliseconds Rounding{2};
     // Interval between a message and its repetition: twice the answer time, within these bounds, and FirstGap
     // before one is known. Later intervals grow by half, up to LongestGap if answers do not take longer.
     static constexpr Milliseconds FirstGap{100};
@@ -112,7 +114,9 @@ public:
              TimePoint now);
     // Notes a datagram that arrived for us. Returns false if the vendor should not see it.
     bool Received(const KeyExchange &what, TimePoint now);
-    // Notes the end of a datagram that arrived, also of a fragment.
+    // Notes the end of a datagram that arrived for us, also of a fragment. Anyone can forge a stamp. So its
+    // echo counts only if an exchange with the sender has not settled, and up to the time since the first
+    // stamp that went to the sender in this exchange.
     void Stamped(const KeyExchange::Prefix &from, const KeyExchangeStamp &stamp, TimePoint now);
     // Time at which to call TakeDue; none: nothing waits.
     std::optional<TimePoint> Due() const;
@@ -124,8 +128,11 @@ public:
     // Drops all that waits for a peer: the exchange begins anew.
     void Forget(const KeyExchange::Prefix &peer);
 
-    // How long peers take to answer; zero: unknown.
-    Duration AnswerTime() const { return _answerTime.value_or(Duration(0)); }
+    // How long peers take to answer; zero: unknown, also once all exchanges have settled.
+    Duration AnswerTime(TimePoint now) const
+    {
+        return now - _exchangedAt < Settled ? _answerTime.value_or(Duration(0)) : Duration(0);
+    }
     std::size_t Window() const { return _window; }
     // Bytes that are sent and not answered.
     std::size_t Unanswered() const { return _unanswered; }
@@ -187,7 +194,8 @@ private:
         TimePoint UnansweredUntil;   // if there are any: after this they count as lost
         TimePoint TouchedAt;
         TimePoint ExchangedAt;
-        TimePoint HandshakeAt{};  // when a handshake with it last made progress
+        std::optional<TimePoint> StampedAt;  // when the first stamp of this exchange went
+        TimePoint HandshakeAt{};             // when a handshake with it last made progress
     };
     struct Choice
     {
@@ -233,6 +241,7 @@ private:
     };
     KeyExchangeStamp StampFor(const KeyExchange::Prefix &peer, TimePoint now) const;
     void Settle(Peer &peer) { _unanswered -= std::exchange(peer.Unanswered, 0); }
+    void ForgetAnswersIfSettled(TimePoint now);
     void Expire(TimePoint now);
     void Lower(TimePoint now);
     Duration GapNow() const;

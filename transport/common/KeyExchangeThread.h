@@ -78,10 +78,16 @@ public:
     // Takes any received datagram, before the guard has changed it.
     void Came(std::span<const std::uint8_t> datagram)
     {
-        if (const auto stamp = KeyExchangeStamp::Of(datagram))
+        const auto stamp = KeyExchangeStamp::Of(datagram);
+        const auto what = stamp ? ReadKeyExchange(datagram) : std::nullopt;
+        if (what)
         {
             const std::lock_guard lock(_mutex);
-            _exchanges.Stamped(Rtps::PrefixOf(datagram.subspan(Rtps::PrefixAt)), *stamp, Clock::now());
+            // The first message of a peer may come before this node has sent one.
+            if (what->To == _self || _self == KeyExchange::Prefix{})
+            {
+                _exchanges.Stamped(what->From, *stamp, Clock::now());
+            }
         }
     }
     // True if it is for the own participant.
@@ -99,7 +105,7 @@ public:
     KeyExchangeOutbox::Duration AnswerTime() const
     {
         const std::lock_guard lock(_mutex);
-        return _exchanges.AnswerTime();
+        return _exchanges.AnswerTime(Clock::now());
     }
     void Forget(const KeyExchange::Prefix &peer)
     {

@@ -52,11 +52,19 @@ protected:
         return static_cast<std::uint32_t>(
             std::chrono::duration_cast<Milliseconds>(time.time_since_epoch()).count());
     }
+    // Begins an exchange with a peer.
+    void Begin(std::uint8_t peer, Milliseconds at)
+    {
+        Put(peer, Step::Ask, 0, at, 100);
+        Take(at);
+        Hear(peer, Step::Request, at);
+    }
     // An answer comes so long after the datagram that it answers.
     void Answer(std::uint8_t peer, Milliseconds took, Milliseconds at)
     {
         Outbox.Stamped(Prefix(peer), {.SentAt = 1, .Echo = Ticks(Start + at - took)}, Start + at);
     }
+    KeyExchangeOutbox::Duration AnswerTime(Milliseconds at) const { return Outbox.AnswerTime(Start + at); }
     Routes Take(Milliseconds at)
     {
         Routes routes;
@@ -125,6 +133,8 @@ TEST_F(KeyExchangeOutboxTest, AnAnswerMakesRoomForTheNext)
 
 TEST_F(KeyExchangeOutboxTest, QuickAnswersOpenTheWindowAndLateOnesCloseIt)
 {
+    Begin(1, 0ms);
+    Begin(2, 0ms);
     Answer(1, 100ms, 1s);
     EXPECT_GT(Outbox.Window(), KeyExchangeOutbox::FirstWindow);
     const std::size_t open = Outbox.Window();
@@ -150,14 +160,65 @@ TEST_F(KeyExchangeOutboxTest, AnEchoTellsTheAnswerTimeAlsoOfARepetition)
     Take(0ms);
     EXPECT_EQ(Take(100ms), (Routes{1}));
     Answer(1, 10ms, 110ms);
-    EXPECT_EQ(Outbox.AnswerTime(), 10ms);
+    EXPECT_EQ(AnswerTime(110ms), 10ms);
 }
 
 TEST_F(KeyExchangeOutboxTest, AnEchoThatCannotBeTrueTellsNothing)
 {
+    Begin(1, 0ms);
     Answer(1, -1ms, 100ms);
-    Answer(1, KeyExchangeOutbox::LongestAnswer + 1ms, 100ms);
-    EXPECT_EQ(Outbox.AnswerTime(), 0ms);
+    EXPECT_EQ(AnswerTime(100ms), 0ms);
+    for (auto at = 0ms; at < 2 * KeyExchangeOutbox::LongestAnswer; at += 1000ms)
+    {
+        Hear(1, Step::Request, at);
+    }
+    Answer(1, KeyExchangeOutbox::LongestAnswer + 1ms, 2 * KeyExchangeOutbox::LongestAnswer);
+    EXPECT_EQ(AnswerTime(2 * KeyExchangeOutbox::LongestAnswer), 0ms);
+}
+
+TEST_F(KeyExchangeOutboxTest, AnEchoThatIsOlderThanTheFirstStampToThePeerTellsNothing)
+{
+    Begin(1, 1000ms);
+    Answer(1, 19s, 1500ms);
+    EXPECT_EQ(AnswerTime(1500ms), 0ms);
+    Answer(1, 500ms, 1500ms);
+    EXPECT_EQ(AnswerTime(1500ms), 500ms);
+}
+
+TEST_F(KeyExchangeOutboxTest, AnEchoThatIsOlderThanTheFirstStampOfANewExchangeTellsNothing)
+{
+    Begin(1, 0ms);
+    Begin(1, 30s);
+    Answer(1, 19s, 31s);
+    EXPECT_EQ(AnswerTime(31s), 0ms);
+}
+
+TEST_F(KeyExchangeOutboxTest, AnEchoFromAPeerWithoutAnExchangeTellsNothing)
+{
+    Begin(1, 0ms);
+    Answer(2, 400ms, 500ms);
+    EXPECT_EQ(AnswerTime(500ms), 0ms);
+}
+
+TEST_F(KeyExchangeOutboxTest, AnEchoFromAPeerWithASettledExchangeTellsNothing)
+{
+    Begin(1, 0ms);
+    Begin(2, 6s);
+    Answer(1, 400ms, 7s);
+    EXPECT_EQ(AnswerTime(7s), 0ms);
+}
+
+TEST_F(KeyExchangeOutboxTest, AnswerTimeAndWindowAreForgottenWhenAllExchangesHaveSettled)
+{
+    Begin(1, 0ms);
+    Answer(1, 3s, 3s);
+    EXPECT_LT(Outbox.Window(), KeyExchangeOutbox::FirstWindow);
+    EXPECT_EQ(AnswerTime(5990ms), 3s);
+    EXPECT_EQ(AnswerTime(6s), 0ms);
+    Put(2, Step::Reply, 2, 7s);
+    EXPECT_EQ(Outbox.Window(), KeyExchangeOutbox::FirstWindow);
+    EXPECT_EQ(Take(7s), (Routes{2}));
+    EXPECT_EQ(Next(), 7s + KeyExchangeOutbox::FirstGap);
 }
 
 TEST_F(KeyExchangeOutboxTest, ADatagramThatIsProtectedAsAWholeHasNoStamp)
@@ -234,6 +295,7 @@ TEST_F(KeyExchangeOutboxTest, RepetitionsFollowEachOtherWithinASecondHoweverMany
 
 TEST_F(KeyExchangeOutboxTest, ARepetitionWaitsForTwoAnswerTimes)
 {
+    Begin(1, 0ms);
     Answer(1, 1s, 1s);
     Put(2, Step::Reply, 2, 2s);
     EXPECT_EQ(Take(2s), (Routes{2}));
@@ -558,6 +620,19 @@ TEST_F(RepeatedFinalTest, TheVendorsOwnAnswerTakesThePlaceOfTheRepetition)
     Put(1, Step::Final, 2, 1001ms);
     EXPECT_EQ(Take(1000ms + Delay), (Routes{2}));
     EXPECT_EQ(Take(60s), Routes{});
+}
+
+TEST_F(RepeatedFinalTest, ManyCertificatesAreAnsweredOnceASecond)
+{
+    int answers = 0;
+    for (auto at = 1000ms; at < 21s; at += 10ms)
+    {
+        Hear(1, Step::Reply, at);
+        Hear(1, Step::Control, at);
+        answers += static_cast<int>(Take(at).size());
+    }
+    EXPECT_LE(answers, 27);
+    EXPECT_GE(answers, 20);
 }
 
 TEST_F(RepeatedFinalTest, APeerThatWasNotAnsweredYetIsNotAnsweredHere)
