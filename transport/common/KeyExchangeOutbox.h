@@ -133,6 +133,8 @@ public:
     {
         return now - _exchangedAt < Settled ? _answerTime.value_or(Duration(0)) : Duration(0);
     }
+    // Time at which all exchanges so far count as settled; it may be past.
+    TimePoint SettledAt() const { return _exchangedAt + Settled; }
     std::size_t Window() const { return _window; }
     // Bytes that are sent and not answered.
     std::size_t Unanswered() const { return _unanswered; }

@@ -2,6 +2,7 @@
 
 #include <rabit/transport/DiscoveryTurns.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -27,6 +28,8 @@ class KeyExchangeThread final : public DueThread
 public:
     // Called without a lock of this object, on the thread or in Put.
     using Send = std::function<void(const Route &route, std::vector<std::uint8_t> &datagram)>;
+    // Called on the thread, without a lock of this object.
+    using Tell = std::function<void(bool isSettled)>;
 
     // `largest`: size of a datagram with a handshake's message.
     KeyExchangeThread(std::shared_ptr<DiscoveryTurns> turns, std::size_t largest)
@@ -40,6 +43,13 @@ public:
     {
         _send = std::move(send);
         DueThread::Start();
+    }
+    // Calls `tell` soon, and again whenever exchanges have begun or all have settled.
+    void TellSettled(Tell tell)
+    {
+        const std::lock_guard lock(_mutex);
+        _tell = std::move(tell);
+        WakeIfEarlier();
     }
     // Takes a datagram that the vendor wants to send. Returns false if it should be sent unchanged. Datagrams
     // that may go now are sent on the calling thread. The vendor's locks may be held.
@@ -63,7 +73,7 @@ public:
         {
             return false;
         }
-        Work(lock);
+        SendDue(lock);
         WakeIfEarlier();
         return true;
     }
@@ -114,8 +124,39 @@ public:
     }
 
 private:
-    std::optional<Clock::time_point> Due() override { return _exchanges.Due(); }
+    std::optional<Clock::time_point> Due() override
+    {
+        const auto due = _exchanges.Due();
+        const auto tellAt = TellAt();
+        return due && tellAt ? std::min(*due, *tellAt) : due ? due : tellAt;
+    }
     void Work(std::unique_lock<std::mutex> &lock) override
+    {
+        SendDue(lock);
+        const auto now = Clock::now();
+        if (const auto tellAt = TellAt(); tellAt && *tellAt <= now)
+        {
+            _told = Told{.SettledAt = _exchanges.SettledAt(), .IsSettled = _exchanges.SettledAt() <= now};
+            const bool isSettled = _told->IsSettled;
+            const Tell tell = _tell;
+            lock.unlock();
+            tell(isSettled);
+            lock.lock();
+        }
+    }
+    std::optional<Clock::time_point> TellAt() const
+    {
+        if (!_tell)
+        {
+            return std::nullopt;
+        }
+        if (!_told || (_told->IsSettled && _told->SettledAt != _exchanges.SettledAt()))
+        {
+            return Clock::time_point{};
+        }
+        return _told->IsSettled ? std::nullopt : std::optional(_exchanges.SettledAt());
+    }
+    void SendDue(std::unique_lock<std::mutex> &lock)
     {
         for (KeyExchangeOutbox::Datagram &datagram : _exchanges.TakeDue(Clock::now()))
         {
@@ -133,7 +174,15 @@ private:
     const std::shared_ptr<DiscoveryTurns> _turns;
     const std::size_t _largest;
     Send _send;
-    KeyExchangeOutbox _exchanges;        // guarded by _mutex, like those below
+    struct Told
+    {
+        Clock::time_point SettledAt;
+        bool IsSettled = false;
+    };
+
+    KeyExchangeOutbox _exchanges;  // guarded by _mutex, like those below
+    Tell _tell;
+    std::optional<Told> _told;           // what _tell was called with last
     KeyExchange::Prefix _self{};         // known once something was exchanged
     RecentNumbers<Route, Less> _routes;  // of _exchanges
 };

@@ -58,20 +58,28 @@ bool KeyAddressees::Heed(const rtps::RTPSParticipant &participant)
     return true;
 }
 
-void KeyAddressees::Hasten(const rtps::RTPSParticipant &participant)
+void KeyAddressees::SetPeriods(const rtps::RTPSParticipant &participant, bool isSettled)
 {
-    // OMG DDS Security 1.1, 7.4.5: the protected writers of publications and subscriptions, and that of keys.
-    constexpr rtps::octet writers[][4] = {
-        {0xff, 0x00, 0x03, 0xc2}, {0xff, 0x00, 0x04, 0xc2}, {0xff, 0x02, 0x02, 0xc3}};
-    rtps::WriterTimes times;
-    times.heartbeatPeriod = {0, 250'000'000};
-    rtps::GUID_t guid = participant.getGuid();
-    for (const auto &entity : writers)
+    const eprosima::fastrtps::Duration_t soon{0, 250'000'000};
+    const eprosima::fastrtps::Duration_t calm{2, 0};
+    struct Writer
     {
-        std::copy(std::begin(entity), std::end(entity), guid.entityId.value);
+        rtps::octet Entity[4];
+        eprosima::fastrtps::Duration_t Period;
+    };
+    // OMG DDS Security 1.1, 7.4.5: the protected writers of publications and subscriptions, and that of keys.
+    const Writer writers[] = {{{0xff, 0x00, 0x03, 0xc2}, isSettled ? calm : soon},
+                              {{0xff, 0x00, 0x04, 0xc2}, isSettled ? calm : soon},
+                              {{0xff, 0x02, 0x02, 0xc3}, soon}};
+    rtps::GUID_t guid = participant.getGuid();
+    for (const Writer &each : writers)
+    {
+        std::copy(std::begin(each.Entity), std::end(each.Entity), guid.entityId.value);
         if (auto *const writer =
                 dynamic_cast<rtps::StatefulWriter *>(rtps::RTPSDomainImpl::find_local_writer(guid)))
         {
+            rtps::WriterTimes times;
+            times.heartbeatPeriod = each.Period;
             writer->updateTimes(times);
         }
     }

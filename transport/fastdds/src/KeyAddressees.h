@@ -18,9 +18,12 @@ public:
     // Installs the filter in an enabled participant. Returns false, and changes nothing, if its writer of
     // keys is not found.
     static bool Heed(const eprosima::fastrtps::rtps::RTPSParticipant &participant);
-    // Makes the protected writers of an enabled participant repeat heartbeats after a quarter of a second.
-    // The vendor's periods are 1 and 3 s, as long as a lost key or endpoint then waits.
-    static void Hasten(const eprosima::fastrtps::rtps::RTPSParticipant &participant);
+    // Sets how soon the protected writers of an enabled participant repeat heartbeats. The writer of keys
+    // does so after 0.25 s, and those of discovery too while exchanges are under way. The vendor's periods
+    // are 3 and 1 s, as long as a lost key or endpoint then waits. `isSettled`: KeyExchangeOutbox no longer
+    // holds back what is too much. The vendor's heartbeat goes to all readers while one is behind, and all
+    // answer. So the writers of discovery repeat it after 2 s. Call without the vendor's locks.
+    static void SetPeriods(const eprosima::fastrtps::rtps::RTPSParticipant &participant, bool isSettled);
     // True if the participant `own` of this process and `peer` have each other's keys.
     static bool HasKeysOf(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer);
 

@@ -125,7 +125,7 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
     _participant.load()->enable();
     if (settings.Security)
     {
-        KeyAddressees::Hasten(*_participant);
+        _keys->TellSettled([this](bool isSettled) { KeyAddressees::SetPeriods(*_participant, isSettled); });
         if (!KeyAddressees::Heed(*_participant))
         {
             Log()->Line("Fast DDS does not show its writer of keys: it says them to all");
