@@ -202,7 +202,8 @@ bool Exploration::WaitUntilTaken(std::chrono::nanoseconds limit)
     const std::uint64_t turn = ++_turnsAsked;
     _wake();
     std::unique_lock lock(_mutex);
-    return _turnDone.wait_for(lock, limit, [this, turn] { return _turnsDone >= turn; });
+    _turnDone.wait_for(lock, limit, [this, turn] { return _turnsDone >= turn || !_isServed; });
+    return _turnsDone >= turn;
 }
 
 void Exploration::EndTurn(std::uint64_t asked)
@@ -214,6 +215,15 @@ void Exploration::EndTurn(std::uint64_t asked)
     {
         const std::lock_guard lock(_mutex);
         _turnsDone = asked;
+    }
+    _turnDone.notify_all();
+}
+
+void Exploration::SetServed(bool isServed)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        _isServed = isServed;
     }
     _turnDone.notify_all();
 }

@@ -71,6 +71,8 @@ public:
     // Call at the beginning of a unit of work, and pass the result to EndTurn at its end.
     std::uint64_t BeginTurn() const { return _turnsAsked; }
     void EndTurn(std::uint64_t asked);
+    // False: no unit of work follows, so nobody waits for one. True, from the beginning: they follow again.
+    void SetServed(bool isServed);
 
 private:
     void Tell();
@@ -93,6 +95,7 @@ private:
     std::vector<std::tuple<std::string, std::string, std::chrono::milliseconds>> _expiries;
     std::atomic<std::uint64_t> _turnsAsked{0};  // calls of WaitUntilTaken
     std::uint64_t _turnsDone = 0;               // those before the last whole unit of work began
+    bool _isServed = true;
     std::condition_variable _turnDone;
 };
 

@@ -784,6 +784,7 @@ FleetExplorer &GatewayManager::Explorer()
 
 void GatewayManager::Startup()
 {
+    _exploration->SetServed(true);
     if (!_parts || !_parts->IsOpen())
     {
         _parts.reset();
@@ -802,6 +803,7 @@ void GatewayManager::ExecuteUnitOfWork()
 
 void GatewayManager::Shutdown()
 {
+    _exploration->SetServed(false);
     if (_parts)
     {
         _parts->Close();

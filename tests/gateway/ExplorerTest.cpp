@@ -84,6 +84,21 @@ TEST(Exploration, WhatWasPostedIsTakenByAUnitOfWorkThatBeginsLater)
     EXPECT_TRUE(exploration.WaitUntilTaken(0s));
 }
 
+TEST(Exploration, NobodyWaitsForAUnitOfWorkAfterTheLast)
+{
+    Exploration exploration([] {});
+    exploration.SetServed(false);
+    EXPECT_FALSE(exploration.WaitUntilTaken(24h));
+}
+
+TEST_F(ExplorerTest, NobodyWaitsForAGatewayThatHasEnded)
+{
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(1s);
+    tool->Manager->Shutdown();
+    EXPECT_FALSE(explorer.WaitUntilTaken(24h));
+}
+
 TEST(Exploration, AReportIsRequestedAgainAndAgainUntilItHasCome)
 {
     using Report = FleetExplorer::Report;
