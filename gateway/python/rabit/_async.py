@@ -3,7 +3,46 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+from collections.abc import Callable, Iterator
 from typing import Any
+
+
+class _Waiters:
+    """Futures of one event loop, which reads the file descriptor while there are any, and no longer: a loop keeps alive
+    what it reads for."""
+
+    def __init__(self, fd: int, on_ready: Callable[[], None]) -> None:
+        self._fd = fd
+        self._on_ready = on_ready
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self.futures: set[asyncio.Future[None]] = set()
+
+    @contextlib.contextmanager
+    def one_more(self) -> Iterator[asyncio.Future[None]]:
+        loop = asyncio.get_running_loop()
+        if self._loop is not loop:
+            if self._loop is not None and not self._loop.is_closed():
+                raise RuntimeError("another event loop waits here already")
+            loop.add_reader(self._fd, self._on_ready)
+            self._loop = loop
+            self.futures = set()
+        future: asyncio.Future[None] = loop.create_future()
+        self.futures.add(future)
+        try:
+            yield future
+        finally:
+            self.futures.discard(future)
+            if not self.futures and self._loop is loop:
+                self._loop = None
+                if not loop.is_closed():
+                    loop.remove_reader(self._fd)
+
+
+def _finish(futures: set[asyncio.Future[None]]) -> None:
+    for future in futures:
+        if not future.done():
+            future.set_result(None)
 
 
 class Readable:
@@ -11,40 +50,18 @@ class Readable:
 
     def __init__(self, core: Any) -> None:
         self._core = core
-        self._loop: asyncio.AbstractEventLoop | None = None
-        self._waiting: list[asyncio.Future[None]] = []
+        self._waiters = _Waiters(core.fd, self._on_ready)
 
     async def wait(self) -> None:
         """Returns when the core is ready, or may be."""
-        loop = asyncio.get_running_loop()
-        if self._loop is not loop:
-            self.close()
-            self._loop = loop
-            loop.add_reader(self._core.fd, self._on_ready)
-        self._core.arm()
-        if self._core.is_ready:
-            return
-        future: asyncio.Future[None] = loop.create_future()
-        self._waiting.append(future)
-        try:
-            await future
-        finally:
-            if future in self._waiting:
-                self._waiting.remove(future)
+        with self._waiters.one_more() as future:
+            self._core.arm()
+            if not self._core.is_ready:
+                await future
 
     def _on_ready(self) -> None:
         self._core.drain()
-        waiting, self._waiting = self._waiting, []
-        for future in waiting:
-            if not future.done():
-                future.set_result(None)
-
-    def close(self) -> None:
-        """Leaves the event loop."""
-        loop, self._loop = self._loop, None
-        if loop is not None and not loop.is_closed():
-            loop.remove_reader(self._core.fd)
-            self._on_ready()
+        _finish(self._waiters.futures)
 
 
 class OutcomeLoop:
@@ -52,33 +69,22 @@ class OutcomeLoop:
 
     def __init__(self, core: Any) -> None:
         self._core = core
-        self._loop: asyncio.AbstractEventLoop | None = None
-        self._futures: dict[int, asyncio.Future[None]] = {}
+        self._waiters = _Waiters(core.outcomes_fd, self._on_known)
+        self._by_receipt: dict[int, set[asyncio.Future[None]]] = {}
 
     async def wait(self, receipt: Any) -> None:
-        loop = asyncio.get_running_loop()
-        if self._loop is not loop:
-            self.close()
-            self._loop = loop
-            loop.add_reader(self._core.outcomes_fd, self._on_known)
-        self._core.arm_outcomes()
-        future: asyncio.Future[None] = loop.create_future()
-        self._futures[receipt.number] = future
-        try:
-            if not receipt.tell_loop():
-                await future
-        finally:
-            self._futures.pop(receipt.number, None)
+        with self._waiters.one_more() as future:
+            futures = self._by_receipt.setdefault(receipt.number, set())
+            futures.add(future)
+            try:
+                self._core.arm_outcomes()
+                if not receipt.tell_loop():
+                    await future
+            finally:
+                futures.discard(future)
+                if not futures:
+                    self._by_receipt.pop(receipt.number, None)
 
     def _on_known(self) -> None:
-        self._core.arm_outcomes()
         for number in self._core.take_outcomes():
-            future = self._futures.get(number)
-            if future is not None and not future.done():
-                future.set_result(None)
-
-    def close(self) -> None:
-        loop, self._loop = self._loop, None
-        if loop is not None and not loop.is_closed():
-            loop.remove_reader(self._core.outcomes_fd)
-            self._on_known()
+            _finish(self._by_receipt.get(number, set()))

@@ -81,12 +81,15 @@ class Node:
         _running.add(self)
 
     def stop(self) -> None:
-        """Leaves the network. Messages without an outcome get one, and all iterations end."""
+        """Leaves the network. Messages without an outcome get one, and all iterations end.
+
+        In a manager of this node it returns at once: iterations and managers are told to end, and the node has ended
+        when its `with` block has."""
+        if not self._core.stop():
+            return
         _running.discard(self)
-        self._core.stop()
         for stream in [*self._subscriptions, *self._queues.values()]:
             stream._join()
-        self._outcomes.close()
 
     def __enter__(self) -> Node:
         self.start()

@@ -92,10 +92,8 @@ class _Stream:
     def close(self) -> None:
         """Nothing comes any more."""
         self._core.close()
-        self._readable.close()
 
     def _join(self) -> None:
-        self._readable.close()
         thread, self._thread = self._thread, None
         if thread is not None and thread is not threading.current_thread():
             thread.join()

@@ -273,13 +273,14 @@ private:
         {
             return;
         }
-        const auto items = py::reinterpret_steal<py::object>(PySequence_Fast(value.ptr(), ""));
+        // A tuple of its own: elements may run code of Python, which may change the list.
+        const auto items = py::reinterpret_steal<py::tuple>(PySequence_Tuple(value.ptr()));
         if (!items)
         {
             PyErr_Clear();
             WrongType("a list", value);
         }
-        const auto length = static_cast<std::size_t>(PySequence_Fast_GET_SIZE(items.ptr()));
+        const std::size_t length = items.size();
         Length(codec.Shape, length, "elements");
         if (codec.Shape.What == Kind::Sequence)
         {
@@ -288,7 +289,7 @@ private:
         for (std::size_t i = 0; i < length; ++i)
         {
             const Step step(_path, "[" + std::to_string(i) + "]");
-            Value(*codec.Element, PySequence_Fast_GET_ITEM(items.ptr(), static_cast<Py_ssize_t>(i)));
+            Value(*codec.Element, PyTuple_GET_ITEM(items.ptr(), static_cast<Py_ssize_t>(i)));
         }
     }
 
@@ -412,9 +413,10 @@ private:
         for (const Codec::Field &field : codec.Fields)
         {
             const Step step(_path, "." + field.Part.Name);
-            PyObject *member = PyDict_GetItem(value.ptr(), field.Name.ptr());
-            used += member != nullptr ? 1 : 0;
-            member != nullptr ? Value(*field.Type, member) : Fresh(field);
+            const auto member =
+                py::reinterpret_borrow<py::object>(PyDict_GetItem(value.ptr(), field.Name.ptr()));
+            used += member ? 1 : 0;
+            member ? Value(*field.Type, member) : Fresh(field);
         }
         if (used != py::len(value))
         {
@@ -524,9 +526,8 @@ std::vector<std::uint8_t> Encode(const Codec &codec, py::handle value)
     return out.Finish();
 }
 
-void Assign(const MessageClass &type, py::handle value, RabitMessage &message)
+void Assign(const MessageClass &type, std::span<const std::uint8_t> sample, RabitMessage &message)
 {
-    const std::vector<std::uint8_t> sample = Encode(*type.Root, value);
     if (!type.Registered->Deserialize(sample, message))
     {
         throw py::value_error(type.Name() + ": the value is too large");
@@ -536,7 +537,7 @@ void Assign(const MessageClass &type, py::handle value, RabitMessage &message)
 std::shared_ptr<RabitMessage> MessageOf(const MessageClass &type, py::handle value)
 {
     std::shared_ptr<RabitMessage> message = type.Registered->CreateShared();
-    Assign(type, value, *message);
+    Assign(type, Encode(*type.Root, value), *message);
     return message;
 }
 

@@ -147,44 +147,60 @@ void Node::Start()
     _isRunning = true;
 }
 
-void Node::Stop()
+void Node::CloseStreams(Parts &parts)
 {
-    if (!_parts || getpid() != _process || _isStopped.exchange(true))
     {
-        return;
-    }
-    _isRunning = false;
-    const auto parts = _parts;
-    {
-        const std::lock_guard lock(parts->Mutex);
-        for (const auto &weak : parts->Subscriptions)
+        const std::lock_guard lock(parts.Mutex);
+        for (const auto &weak : parts.Subscriptions)
         {
             if (const auto subscription = weak.lock())
             {
                 subscription->Close();
             }
         }
-        parts->Subscriptions.clear();
+        parts.Subscriptions.clear();
     }
-    for (const auto &queue : parts->Queues)
+    for (const auto &queue : parts.Queues)
     {
         queue->Close();
     }
+}
+
+bool Node::Stop()
+{
+    if (!_parts || getpid() != _process)
     {
-        // Managers may wait for the GIL, and use the node until they have ended.
-        const py::gil_scoped_release released;
-        parts->Reactor->ShutdownAllManagers();
-        if (parts->Runner.joinable())
-        {
-            parts->Runner.join();
-        }
+        return true;
     }
-    _parts.reset();
+    const auto parts = _parts;
+    _isRunning = false;
+    CloseStreams(*parts);
+    // Managers may wait for the GIL, and use the node until they have ended.
     const py::gil_scoped_release released;
+    if (PythonManager::IsCalledIn(parts->Workspace))
+    {
+        parts->Reactor->ShutdownAllManagers();
+        return false;
+    }
+    const std::lock_guard ending(parts->Ending);
+    if (!parts->Reactor)
+    {
+        return true;  // another thread has just ended it
+    }
+    parts->Reactor->ShutdownAllManagers();
+    if (parts->Runner.joinable())
+    {
+        parts->Runner.join();
+    }
+    {
+        const py::gil_scoped_acquire gil;
+        _parts.reset();
+    }
     const std::unique_lock lock(parts->InUse);
     parts->Explorer = nullptr;
     parts->Posted.clear();
     parts->Reactor.reset();
+    return true;
 }
 
 void Node::AttachAll(Parts &parts)
@@ -232,17 +248,18 @@ std::shared_ptr<Subscription> Node::Subscribe(const std::string &pattern, const 
     const auto parts = UseNetwork();
     const std::string whole = pattern.empty() ? message : pattern + "/" + message;
     const bool isLocal = IsForeign(whole) || pattern == Name();
-    auto subscription = std::make_shared<Subscription>(_parts->Workspace, isLocal ? "" : pattern,
-                                                       isLocal && pattern != Name() ? whole : message, type);
+    auto subscription = std::make_shared<Subscription>(
+        std::shared_ptr<RabitWorkspace>(parts, &parts->Workspace), isLocal ? "" : pattern,
+        isLocal && pattern != Name() ? whole : message, type);
     const bool isOneNode = isLocal || IsNodeName(pattern);
     if (!isLocal && !IsNodePattern(pattern))
     {
         throw py::value_error("`" + pattern + "` is no node name or pattern");
     }
     const SubscribeRule rule{.Message = message, .Type = type->Name(), .From = {pattern}};
-    if (!isLocal && _parts->Recorder != nullptr)
+    if (!isLocal && parts->Recorder != nullptr)
     {
-        _parts->Recorder->AddSubscription(rule);
+        parts->Recorder->AddSubscription(rule);
     }
     if (const std::string problem = isOneNode ? subscription->Attach(isLocal ? "" : pattern) : "";
         !problem.empty())
@@ -254,10 +271,14 @@ std::shared_ptr<Subscription> Node::Subscribe(const std::string &pattern, const 
         parts->Explorer->Subscribe(rule);
     }
     {
-        const std::lock_guard lock(_parts->Mutex);
-        _parts->Subscriptions.push_back(subscription);
+        const std::lock_guard lock(parts->Mutex);
+        parts->Subscriptions.push_back(subscription);
     }
-    AttachAll(*_parts);
+    AttachAll(*parts);
+    if (!_isRunning)
+    {
+        CloseStreams(*parts);  // a manager subscribes while the node ends
+    }
     return subscription;
 }
 
@@ -268,14 +289,16 @@ void Node::Unsubscribe(const std::shared_ptr<Subscription> &subscription)
 
 void Node::Post(const std::string &name, py::handle value)
 {
-    const auto held = Use();
-    Parts &parts = *held;
     const std::shared_ptr<MessageClass> type = ClassOf(value);
     if (!type)
     {
         throw py::type_error("post " + name + ": expected a message, not " +
                              py::cast<std::string>(py::repr(value)));
     }
+    // May run code of Python, which may post or stop the node.
+    const std::vector<std::uint8_t> sample = Encode(*type->Root, value);
+    const auto held = Use();
+    Parts &parts = *held;
     auto &[known, message] = parts.Posted[name];
     if (!message)
     {
@@ -295,7 +318,7 @@ void Node::Post(const std::string &name, py::handle value)
     {
         throw py::type_error("post " + name + ": expected a " + known->Name() + ", not a " + type->Name());
     }
-    Assign(*type, value, *message);
+    Assign(*type, sample, *message);
     // With the GIL: two threads must not post one message at once, and handlers here only wake.
     message->PostMessage();
 }
@@ -303,19 +326,19 @@ void Node::Post(const std::string &name, py::handle value)
 std::shared_ptr<Receipt> Node::Send(const std::string &address, py::handle value,
                                     std::optional<double> expire)
 {
-    const auto held = Use();
-    Parts &parts = *held;
     const std::shared_ptr<MessageClass> type = ClassOf(value);
     if (!type)
     {
         throw py::type_error("send " + address + ": expected a message, not " +
                              py::cast<std::string>(py::repr(value)));
     }
+    const std::shared_ptr<RabitMessage> message = MessageOf(*type, value);
+    const auto held = Use();
+    Parts &parts = *held;
     if (expire)
     {
         SetExpiry(address, *expire);
     }
-    const std::shared_ptr<RabitMessage> message = MessageOf(*type, value);
     auto receipt = std::make_shared<Receipt>(_nextReceipt++, address, _outcomes);
     const py::gil_scoped_release released;
     ReasonTap::Last().clear();

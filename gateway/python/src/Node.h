@@ -62,8 +62,10 @@ public:
 
     // Throws ConfigError.
     void Start();
-    // Leaves the network. Messages without an outcome get one.
-    void Stop();
+    // Leaves the network. Messages without an outcome get one. False in a manager of this node, which cannot
+    // wait for its own end: then the streams and the managers are told to end, and the next Stop, in another
+    // thread, ends the node.
+    bool Stop();
 
     std::shared_ptr<Subscription> Subscribe(const std::string &pattern, const std::string &message,
                                             std::shared_ptr<MessageClass> type);
@@ -87,6 +89,7 @@ private:
         std::shared_ptr<Gateway::Fleet> Fleet = std::make_shared<Gateway::Fleet>();
         FleetExplorer *Explorer = nullptr;
         std::shared_mutex InUse;              // by calls that use the explorer without the GIL
+        std::mutex Ending;                    // held while a Stop ends the node, without the GIL
         RecorderManager *Recorder = nullptr;  // null: nothing is recorded
         std::thread Runner;
         std::mutex Mutex;
@@ -101,13 +104,13 @@ private:
     // All messages of a link live equally long: throws py::value_error for another time than before.
     void SetExpiry(const std::string &address, double seconds);
     static void AttachAll(Parts &parts);
+    static void CloseStreams(Parts &parts);
     bool IsForeign(const std::string &name) const;
 
     GatewayConfig _config;
     const pid_t _process;
     std::shared_ptr<Parts> _parts;  // until the managers have ended
     std::atomic<bool> _isRunning{false};
-    std::atomic<bool> _isStopped{false};
     std::atomic<std::uint64_t> _nextReceipt{1};
     const std::shared_ptr<Outcomes> _outcomes = std::make_shared<Outcomes>();
 };

@@ -58,11 +58,20 @@ GatewayConfig ConfigOf(const std::string &file, const std::string &node, const s
     return config;
 }
 
-// The handle of a manager for Python. Wake may be called after the node has stopped, the rest not.
+// The handle of a manager for Python, which may outlive the manager.
 struct ManagerCore
 {
-    PythonManager &Manager;
+    std::shared_ptr<PythonManager *> Manager;
     RabitHandler Wake;
+
+    PythonManager &Use() const
+    {
+        if (*Manager == nullptr)
+        {
+            throw std::runtime_error("the node of this manager was stopped");
+        }
+        return **Manager;
+    }
 };
 
 void DefineReceived(py::module_ &module)
@@ -129,20 +138,21 @@ void DefineNode(py::module_ &module)
 
     py::class_<ManagerCore>(module, "ManagerCore")
         .def("wake", [](const ManagerCore &self) { self.Wake(); })
-        .def_property_readonly("is_turn", [](const ManagerCore &self) { return self.Manager.IsTurn(); })
+        .def_property_readonly("is_turn", [](const ManagerCore &self)
+                               { return *self.Manager != nullptr && (*self.Manager)->IsTurn(); })
         .def("wake_on",
              [](const ManagerCore &self, const std::string &name, const MessageClass &type)
              {
                  const std::shared_ptr<RabitMessage> message = type.Registered->CreateShared();
-                 if (!self.Manager.AddPublishSubscribeMessage(name, message))
+                 if (!self.Use().AddPublishSubscribeMessage(name, message))
                  {
                      throw py::type_error("the local message `" + name + "` is of another type than " +
                                           type.Name());
                  }
-                 self.Manager.WakeUpManagerOnMessagePost(message);
+                 self.Use().WakeUpManagerOnMessagePost(message);
              })
         .def("wake_on_queue", [](const ManagerCore &self, const InboundQueue &from)
-             { self.Manager.WakeUpManagerOnEnqueue(from.Local()); });
+             { self.Use().WakeUpManagerOnEnqueue(from.Local()); });
 
     py::class_<Node, std::shared_ptr<Node>>(module, "NodeCore")
         .def(py::init([](const std::string &file, const std::string &node, const std::string &text,
@@ -173,7 +183,7 @@ void DefineNode(py::module_ &module)
              [](Node &self, const std::string &name, py::object object, double period)
              {
                  PythonManager &manager = self.AddManager(name, std::move(object), period);
-                 return ManagerCore{manager, manager.WakeUpHandler()};
+                 return ManagerCore{manager.Self(), manager.WakeUpHandler()};
              })
         .def("add_library", &Node::AddLibrary)
         .def("start", &Node::Start)
@@ -190,7 +200,9 @@ void DefineNode(py::module_ &module)
         .def("take_outcomes",
              [](Node &self)
              {
+                 // In this order: what becomes known after Take wakes the loop again.
                  self.KnownOutcomes()->Ready().Drain();
+                 self.KnownOutcomes()->Ready().Arm();
                  return self.KnownOutcomes()->Take();
              });
     module.def("load_library", [](const std::string &path) { LoadLibrary(path); });

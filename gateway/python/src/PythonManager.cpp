@@ -7,6 +7,14 @@ namespace Rabit::Python
 
 namespace py = pybind11;
 
+namespace
+{
+
+// The workspace of the manager that this thread calls.
+thread_local const RabitWorkspace *calledIn = nullptr;
+
+}  // namespace
+
 PythonManager::PythonManager(std::string name, RabitWorkspace &workspace, py::object object, double period)
     : RabitManager(std::move(name), workspace), _object(std::move(object))
 {
@@ -20,11 +28,18 @@ PythonManager::PythonManager(std::string name, RabitWorkspace &workspace, py::ob
 PythonManager::~PythonManager()
 {
     const py::gil_scoped_acquire gil;
+    *_self = nullptr;
     _object = py::object();
+}
+
+bool PythonManager::IsCalledIn(const RabitWorkspace &workspace)
+{
+    return calledIn == &workspace;
 }
 
 void PythonManager::Call(const char *function)
 {
+    calledIn = &GetWorkspace();  // the thread is this manager's alone
     const py::gil_scoped_acquire gil;
     std::string problem;
     try

@@ -5,8 +5,8 @@
 
 #include <pybind11/pybind11.h>
 
+#include <memory>
 #include <string>
-#include <vector>
 
 namespace Rabit::Python
 {
@@ -20,6 +20,12 @@ public:
     PythonManager(std::string name, RabitWorkspace &workspace, pybind11::object object, double period);
     ~PythonManager() override;
 
+    // Whether this thread is within a call of a manager of that workspace.
+    static bool IsCalledIn(const RabitWorkspace &workspace);
+
+    // With the GIL. Points to the manager while it lives, and to nothing after that.
+    const std::shared_ptr<PythonManager *> &Self() const { return _self; }
+
     void Startup() override { Call("startup"); }
     void ExecuteUnitOfWork() override { Call("unit_of_work"); }
     void Shutdown() override { Call("shutdown"); }
@@ -28,6 +34,7 @@ private:
     void Call(const char *function);
 
     pybind11::object _object;
+    const std::shared_ptr<PythonManager *> _self = std::make_shared<PythonManager *>(this);
 };
 
 }  // namespace Rabit::Python

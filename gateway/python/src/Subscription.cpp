@@ -24,8 +24,8 @@ double Received::Stamp() const
     return Time.GpsTimeSeconds + GpsEpoch - SystemTimeClock::GetSystemTimeClock()->GetLeapSecondOffset();
 }
 
-Subscription::Subscription(RabitWorkspace &workspace, std::string pattern, std::string message,
-                           std::shared_ptr<MessageClass> type)
+Subscription::Subscription(const std::shared_ptr<RabitWorkspace> &workspace, std::string pattern,
+                           std::string message, std::shared_ptr<MessageClass> type)
     : _workspace(workspace),
       _pattern(std::move(pattern)),
       _message(std::move(message)),
@@ -54,10 +54,15 @@ std::string Subscription::Attach(const std::string &node)
         return "";
     }
     auto source = std::make_shared<Source>();
+    source->Workspace = _workspace.lock();
+    if (!source->Workspace)
+    {
+        return "";
+    }
     source->Node = node;
     source->LocalName = node.empty() ? _message : node + "/" + _message;
     source->Own = _type->Registered->CreateShared();
-    source->Lease = std::make_unique<RabitMessageLease>(_workspace, source->LocalName, source->Own);
+    source->Lease = std::make_unique<RabitMessageLease>(*source->Workspace, source->LocalName, source->Own);
     const auto global = source->Lease->Global();
     if (!global)
     {

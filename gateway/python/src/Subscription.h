@@ -39,8 +39,9 @@ struct Received
 class Subscription : public std::enable_shared_from_this<Subscription>
 {
 public:
-    // The workspace must outlive Close. `pattern` is of nodes; empty: `message` is a local name.
-    Subscription(RabitWorkspace &workspace, std::string pattern, std::string message,
+    // Reads nothing more once the workspace is gone, and keeps it alive while a value is read. `pattern` is
+    // of nodes; empty: `message` is a local name.
+    Subscription(const std::shared_ptr<RabitWorkspace> &workspace, std::string pattern, std::string message,
                  std::shared_ptr<MessageClass> type);
 
     const std::string &Pattern() const { return _pattern; }
@@ -69,6 +70,7 @@ private:
     {
         std::string Node;
         std::string LocalName;
+        std::shared_ptr<RabitWorkspace> Workspace;  // outlives the lease
         std::shared_ptr<RabitMessage> Own;
         std::unique_ptr<RabitMessageLease> Lease;
         RabitScopedConnection Connection;
@@ -86,7 +88,7 @@ private:
     static void Queue(Shared &shared, const std::shared_ptr<Source> &source);
     Received ReceivedOf(const Source &source) const;
 
-    RabitWorkspace &_workspace;
+    const std::weak_ptr<RabitWorkspace> _workspace;
     const std::string _pattern;
     const std::string _message;
     const std::shared_ptr<MessageClass> _type;

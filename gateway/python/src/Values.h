@@ -27,7 +27,8 @@ py::object ValueOfBytes(const MessageClass &type, std::span<const std::uint8_t> 
 std::vector<std::uint8_t> Encode(const Codec &codec, py::handle value);
 // A message with the contents of a value, of the class that its type has in this process.
 std::shared_ptr<RabitMessage> MessageOf(const MessageClass &type, py::handle value);
-void Assign(const MessageClass &type, py::handle value, RabitMessage &message);
+// Makes a message one of that sample.
+void Assign(const MessageClass &type, std::span<const std::uint8_t> sample, RabitMessage &message);
 
 // Sets the members of a new value: those that are given, in order or by name, and the defaults.
 void Init(py::handle self, const py::tuple &given, const py::dict &named);

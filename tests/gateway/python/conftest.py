@@ -5,6 +5,8 @@ import itertools
 import os
 import pathlib
 import subprocess
+import sys
+import textwrap
 import time
 
 import pytest
@@ -50,3 +52,20 @@ def wait_until(holds, seconds=30.0):
         assert time.monotonic() < end, "waited in vain"
         time.sleep(0.01)
     return result
+
+
+def run(program, **more):
+    return subprocess.Popen([sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                            stderr=subprocess.PIPE, text=True, **more)
+
+
+PRELUDE = """
+import asyncio, os, signal, sys, threading, time
+import rabit
+idl = rabit.load_idl({idl!r})
+network = {network!r}
+"""
+
+
+def program(network, text):
+    return PRELUDE.format(idl=str(ROOT / "idl/messages/uav.idl"), network=network) + textwrap.dedent(text)

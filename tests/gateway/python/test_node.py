@@ -5,8 +5,6 @@ import gc
 import logging
 import os
 import signal
-import subprocess
-import sys
 import textwrap
 import threading
 import time
@@ -14,7 +12,7 @@ import time
 import pytest
 
 import rabit
-from conftest import ROOT, wait_until
+from conftest import program, run, wait_until
 
 
 def test_a_wrong_configuration_is_one_line_of_the_gateway(idl, tmp_path):
@@ -194,23 +192,6 @@ def test_beats_go_on_while_python_computes(idl, one_network):
             assert ground.fleet().is_up("uav1")
             time.sleep(0.05)
         assert child.stdout.readline() == "done\n"
-
-
-def run(program, **more):
-    return subprocess.Popen([sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                            stderr=subprocess.PIPE, text=True, **more)
-
-
-PRELUDE = """
-import asyncio, os, signal, sys, threading, time
-import rabit
-idl = rabit.load_idl({idl!r})
-network = {network!r}
-"""
-
-
-def program(network, text):
-    return PRELUDE.format(idl=str(ROOT / "idl/messages/uav.idl"), network=network) + textwrap.dedent(text)
 
 
 @pytest.mark.parametrize(

@@ -175,3 +175,16 @@ def test_the_same_file_gives_the_same_classes(idl):
     assert rabit.load_idl(ROOT / "idl/messages/uav.idl").Uav.Pose is idl.Uav.Pose
     assert rabit.message_class("Uav::Pose") is idl.Uav.Pose
     assert type(idl.Uav.Detections().pose) is idl.Uav.Pose
+
+
+def test_a_list_is_written_as_it_was_whatever_its_elements_do(everything):
+    class Clears:
+        def __float__(self):
+            numbers.clear()
+            points.clear()
+            return 1.0
+
+    numbers, points = [Clears(), 2.0, 3.0], []
+    assert list(everything.PyEverything.All(numbers=numbers).numbers) == [1, 2, 3]
+    numbers, points = [], [{"x": Clears()}, {"x": 2.0}]
+    assert [point.x for point in everything.PyEverything.All(points=points).points] == [1, 2]

@@ -1,0 +1,116 @@
+"""A node ends while other threads and its managers use it."""
+
+import logging
+
+import pytest
+
+import rabit
+from conftest import program, run
+
+
+def end_of(network, text):
+    """What the program prints, whose end is not waited for longer than a minute."""
+    with run(program(network, text)) as child:
+        try:
+            out, errors = child.communicate(timeout=60)
+        except BaseException:
+            child.kill()
+            raise
+        assert child.returncode == 0, errors
+        assert "Traceback" not in errors
+        return out
+
+
+@pytest.mark.parametrize(
+    "call",
+    ["node.flush(3600)", "node.send('uav1/Commands', idl.Uav.Goto())", "node.post('Pose', idl.Uav.Pose())",
+     "node.subscribe('uav*/Pose', idl.Uav.Pose).latest()"],
+    ids=["flush", "send", "post", "subscribe"],
+)
+def test_a_node_ends_beside_threads_that_use_it(one_network, call):
+    """A flush that no unit of work answers any more ends, too."""
+    out = end_of(one_network, f"""
+        def use(node):
+            try:
+                while True:
+                    {call}
+            except RuntimeError as error:
+                assert "was stopped" in str(error), error
+
+        for _ in range(4):
+            node = rabit.Node("planner", **network)
+            node.start()
+            threads = [threading.Thread(target=use, args=[node]) for _ in range(3)]
+            for thread in threads:
+                thread.start()
+            time.sleep(0.1)
+            node.stop()
+            for thread in threads:
+                thread.join()
+        print("ended")
+        """)
+    assert out == "ended\n"
+
+
+def test_a_manager_that_stops_its_node_ends_the_iterations(one_network):
+    out = end_of(one_network, """
+        class Once(rabit.Manager):
+            period = 0.01
+            def unit_of_work(self):
+                self.node.stop()
+            def shutdown(self):
+                print("shutdown", flush=True)
+
+        with rabit.Node("planner", managers=[Once()], **network) as node:
+            for pose in node.subscribe("uav*/Pose", idl.Uav.Pose):
+                pass
+            assert not node.is_running
+        print("ended")
+        """)
+    assert out == "shutdown\nended\n"
+
+
+class Talker(rabit.Manager):
+    """Uses its node until it has ended."""
+
+    def __init__(self, idl):
+        self.idl = idl
+        self.has_ended = False
+
+    def unit_of_work(self):
+        pass
+
+    def shutdown(self):
+        self.post("Pose", self.idl.Uav.Pose())
+        self.send("nobody/Commands", self.idl.Uav.Goto())
+        with pytest.raises(RuntimeError, match="was stopped"):
+            self.node.subscribe("uav*/Pose", self.idl.Uav.Pose).get(timeout=5)
+        self.has_ended = True
+
+
+def test_a_manager_uses_its_node_while_it_ends(idl, one_network, caplog):
+    manager = Talker(idl)
+    with caplog.at_level(logging.ERROR, logger="rabit"), rabit.Node("planner", managers=[manager], **one_network):
+        assert manager.is_turn
+    assert caplog.text == "" and manager.has_ended
+
+
+def test_a_manager_has_no_turn_after_its_node(idl, one_network):
+    manager = Talker(idl)
+    with rabit.Node("planner", managers=[manager], **one_network):
+        pass
+    manager.wake()
+    assert not manager.is_turn
+
+
+def test_a_value_may_stop_the_node_that_is_to_post_it(idl, one_network):
+    class Last:
+        def __index__(self):
+            node.stop()
+            return 1
+
+    node = rabit.Node("planner", **one_network)
+    node.start()
+    node.post("Pose", idl.Uav.Pose())
+    with pytest.raises(RuntimeError, match="was stopped"):
+        node.post("Pose", idl.Uav.Pose(number=Last()))
