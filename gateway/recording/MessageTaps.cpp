@@ -117,15 +117,14 @@ void MessageTaps::Look()
 bool MessageTaps::IsWanted(const std::string &name) const
 {
     return MatchesAny(_config.Record->Messages, name) && !MatchesAny(_config.Record->Except, name) &&
-           !IsBackfilled(name);
+           !IsTakenOver(name);
 }
 
-// These messages are recorded by ../backfill, as they come.
-bool MessageTaps::IsBackfilled(const std::string &name) const
+// ../backfill records these messages, as they come.
+bool MessageTaps::IsTakenOver(const std::string &name) const
 {
-    const std::vector<std::string> &messages = _config.Record->Backfill;
-    const Origin origin = messages.empty() ? Origin() : OriginOf(name);
-    return origin.IsMirrored && std::find(messages.begin(), messages.end(), origin.Message) != messages.end();
+    const Origin origin = OriginOf(name);
+    return origin.IsMirrored && _target->IsTakenOver(origin.Message);
 }
 
 void MessageTaps::AddSubscription(const SubscribeRule &rule)

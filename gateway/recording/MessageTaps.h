@@ -29,7 +29,7 @@ public:
 
 private:
     bool IsWanted(const std::string &name) const;
-    bool IsBackfilled(const std::string &name) const;
+    bool IsTakenOver(const std::string &name) const;
     // The node that posts a message, and the message's name there.
     struct Origin
     {

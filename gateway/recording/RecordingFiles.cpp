@@ -101,7 +101,7 @@ void RecordingFiles::Take(const RecordingInbox::Batch &batch, Time now)
         }
         else if (_writer && _writer->BytesToWrite() >= _settings.Record.SplitSize)
         {
-            Finish();
+            Finish(now);
         }
     }
 }
@@ -136,7 +136,7 @@ void RecordingFiles::Service(Time now)
 {
     if (_writer && now >= _openedAt + Nanoseconds(_settings.Record.SplitTime))
     {
-        Finish();
+        Finish(now);
     }
     if (now >= _nextLook)
     {
@@ -144,7 +144,7 @@ void RecordingFiles::Service(Time now)
         if (_writer && !MakeRoom(Margin()))
         {
             WriteLosses();
-            Finish();
+            Finish(now);
             _notBefore = now + Nanoseconds(LookPeriod);
         }
         else if (_writer)
@@ -183,7 +183,7 @@ void RecordingFiles::Close(Time now)
     if (_writer)
     {
         WriteLosses();
-        Finish();
+        Finish(now);
     }
 }
 
@@ -247,7 +247,8 @@ void RecordingFiles::RepeatStates(Time logTime)
     {
         if (stream.Last)
         {
-            Write(stream, *stream.Last, logTime);
+            // The first message of a file may be older than the state: it came late.
+            Write(stream, *stream.Last, std::max(logTime, stream.Last->LogTime));
         }
     }
 }
@@ -311,18 +312,16 @@ void RecordingFiles::GiveUp(Time now, const std::string &problem)
     Forget();
 }
 
-void RecordingFiles::Finish()
+void RecordingFiles::Finish(Time now)
 {
-    const bool good = _writer->Finish() && _file->Sync();
-    for (Stream &stream : _streams)
+    if (_writer->Finish() && _file->Sync())
     {
-        if (!good)
-        {
-            _status.Messages -= stream.Unsaved;
-            Lose(stream, stream.Unsaved);
-        }
+        Forget();
     }
-    Forget();
+    else
+    {
+        GiveUp(now, NoMore);
+    }
 }
 
 void RecordingFiles::Forget()
@@ -444,6 +443,7 @@ void RecordingFiles::Lose(Stream &stream, std::uint64_t count)
     if (count > 0)
     {
         _status.Lost[stream.Info->Topic] += count;
+        _status.NotKept += count;
         _lossesChanged = true;
     }
 }

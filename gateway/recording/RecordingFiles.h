@@ -27,7 +27,10 @@ struct RecordingStatus
     std::uint64_t Messages = 0;  // that were written since the beginning, to all files
     std::uint64_t Bytes = 0;
     std::map<std::string, std::uint64_t> Lost;  // messages that were not kept, by topic
-    std::string Problem;                        // why nothing is being recorded; empty: it is
+    // Those of them that had come into the memory before: the disk failed. It tells of a failure that is
+    // over.
+    std::uint64_t NotKept = 0;
+    std::string Problem;  // why nothing is being recorded; empty: it is
 };
 
 // Writes the files of a recording: begins, splits and ends them, keeps within the free space, and counts
@@ -85,7 +88,7 @@ private:
     void Flush(Time now);
     // Drops a file that cannot be written any more.
     void GiveUp(Time now, const std::string &problem);
-    void Finish();
+    void Finish(Time now);
     void Forget();
     // MakeRoom removes old files, as far as the settings allow, until `margin` (Margin()) bytes of the disk
     // are free; false if they are not even then.

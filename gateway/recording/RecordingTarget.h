@@ -4,9 +4,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "clocks/SourceClock.h"
 #include "recording/JsonStreams.h"
@@ -51,6 +54,19 @@ public:
     {
         return std::chrono::nanoseconds(_logClock.At(std::chrono::nanoseconds(0)));
     }
+    // Another part of the gateway records these messages of other nodes from now on; RecorderManager leaves
+    // them out. To be called before the recorder finds them.
+    void TakeOver(const std::vector<std::string> &messages)
+    {
+        const std::lock_guard lock(_mutex);
+        _takenOver.insert(messages.begin(), messages.end());
+    }
+    bool IsTakenOver(const std::string &message) const
+    {
+        const std::lock_guard lock(_mutex);
+        return _takenOver.contains(message);
+    }
+
     // Ends the recording. Messages that are put in afterwards are dropped.
     void End() { _recorder.End(); }
 
@@ -81,7 +97,9 @@ private:
     const RabitClock &_clock;
     const SourceClock _logClock;
     std::optional<std::uint32_t> _events;
-    Recorder _recorder;  // last: its thread uses the others
+    mutable std::mutex _mutex;
+    std::set<std::string> _takenOver;  // guarded
+    Recorder _recorder;                // last: its thread uses the others
 };
 
 }  // namespace Rabit

@@ -14,6 +14,7 @@
 
 #include "../SimulatedFleet.h"
 #include "FakeDisk.h"
+#include "recording/RecordingTarget.h"
 
 namespace Rabit
 {
@@ -112,6 +113,14 @@ protected:
         return config;
     }
 
+    static GatewayConfig Backfilling(const std::string &node)
+    {
+        GatewayConfig config = Watching(node);
+        config.Record = RecordSettings{.Folder = "/recordings"};
+        config.Record->Backfill = {"Pose"};
+        return config;
+    }
+
     SimulatedFleet Fleet{1};
     std::map<std::string, std::shared_ptr<FakeDisk>> Disks;
     std::map<std::string, RecorderManager *> Recorders;  // of nodes that run
@@ -161,6 +170,20 @@ TEST_F(RecorderManagerTest, RecordsEachPostHereAndThoseThatComeFromOthers)
         EXPECT_LT(mirrored.LogTimes[at] - mirrored.PublishTimes[at], 300000000U);
     }
     EXPECT_EQ(topics.at("uav1/Gateway/Fleet").Schema, "Rabit::Gateway::Fleet");
+}
+
+// A program with its own main() may have no BackfillManager.
+TEST_F(RecorderManagerTest, RecordsMessagesToBeBackfilledUnlessTheyAreTakenOver)
+{
+    AddRecorded(Backfilling("uav1"));
+    AddRecorded(Backfilling("uav2"));
+    Recorders.at("uav2")->Target()->TakeOver({"Pose"});
+    const auto pose = Fleet.Add(AircraftConfig("uav3")).Register<Uav::Pose>("Pose");
+    Fleet.RunFor(3s);
+    pose->PostMessage();
+    Fleet.RunFor(1s);
+    EXPECT_TRUE(RecordingOf("uav1").contains("uav3/Pose"));
+    EXPECT_FALSE(RecordingOf("uav2").contains("uav3/Pose")) << "another part records it";
 }
 
 TEST_F(RecorderManagerTest, TellsTheQosOfWhatTheConfigurationNames)

@@ -11,6 +11,7 @@ namespace
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::UnorderedElementsAre;
 
 constexpr std::uint64_t Start = 1763866000 * std::uint64_t{1000000000};
 constexpr std::uint64_t Millisecond = 1000000;
@@ -185,6 +186,20 @@ TEST_F(RecordingFilesTest, BeginsAFileWhenOneIsLongEnoughAndRepeatsTheStates)
               _disk.Names()[0]);
 }
 
+// A post that was fetched from another node comes long after its time.
+TEST_F(RecordingFilesTest, RepeatsNoStateBeforeItsTimeWhenAnOldMessageBeginsAFile)
+{
+    _settings.Record.SplitTime = std::chrono::minutes(1);
+    Record(1);
+    Pass(61000);
+    _batch.Items.push_back({0, 0, Start - 1800000 * Millisecond, Start - 1800000 * Millisecond, {7}});
+    TakeAndServe();
+    Files().Close(_now);
+    ASSERT_EQ(_disk.Files.size(), 2U);
+    EXPECT_THAT(LogTimesOf(_disk.Open(_disk.Names()[1])),
+                UnorderedElementsAre(Start - 1800000 * Millisecond, Start));
+}
+
 TEST_F(RecordingFilesTest, GoesOnBehindTheLastNumberThatIsThere)
 {
     _disk.Put("uav1_000041_20250101T000000Z.mcap", 5);
@@ -310,6 +325,35 @@ TEST_F(RecordingFilesTest, CountsWhatADiskThatFailsHasNotKept)
     Files().Close(_now);
     EXPECT_EQ(_disk.Files.size(), 2U);
     EXPECT_EQ(MetadataOf(_disk.Open(_disk.Names()[1]), "rabit.losses").at("uav1/Pose"), "2");
+}
+
+// Its problem may be over when the status is looked at.
+TEST_F(RecordingFilesTest, KnowsThatMessagesWereNotKeptWhenTheDiskWorksAgain)
+{
+    Record();
+    _disk.WriteFails = true;
+    Pass(500);
+    _disk.WriteFails = false;
+    Pass(1100);
+    Record();
+    EXPECT_EQ(Files().Status().Problem, "");
+    EXPECT_EQ(Files().Status().NotKept, 1U);
+}
+
+TEST_F(RecordingFilesTest, MessagesThatDidNotFitTheMemoryAreNotAFailureOfTheDisk)
+{
+    _batch.Lost = {3, 0};
+    Record();
+    EXPECT_EQ(Files().Status().NotKept, 0U);
+}
+
+TEST_F(RecordingFilesTest, AFileThatCannotBeEndedIsAProblem)
+{
+    Record();
+    _disk.WriteFails = true;
+    Files().Close(_now);
+    EXPECT_EQ(Files().Status().Problem, "the disk takes no more");
+    EXPECT_EQ(Files().Status().NotKept, 1U);
 }
 
 TEST_F(RecordingFilesTest, CountsWhatWasLostBeforeItCame)
