@@ -6,10 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
-#include <map>
 #include <mutex>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,8 +15,11 @@
 #include "backfill/FolderPosts.h"
 #include "backfill/Mail.h"
 #include "backfill/Outbox.h"
+#include "backfill/PostAccess.h"
 #include "backfill/PostAnswers.h"
+#include "backfill/QuestionQueue.h"
 #include "backfill/ReadLedger.h"
+#include "backfill/RecordingWatch.h"
 #include "backfill/Requester.h"
 #include "backfill/SeriesStreams.h"
 #include "names/NamePattern.h"
@@ -33,12 +33,8 @@ namespace
 using namespace Backfill;
 
 constexpr double LookPeriod = 0.1;  // seconds
-// Recorded messages are on the disk after half a second, if it is quick enough.
-constexpr std::chrono::seconds AllIsOnDisk(2);
 // Answers under way to one node. A restart of either end costs these at most.
 constexpr std::size_t MostAnswers = 4;
-// Questions that wait for their turn, of all nodes.
-constexpr std::size_t MostQuestions = 256;
 
 bool Answers(const GatewayConfig &config)
 {
@@ -64,13 +60,16 @@ public:
         {
             _posts = std::make_unique<FolderPosts>(config.Record->Folder, config.Node);
             _answers = std::make_unique<PostAnswers>(
-                *_posts, [this](const std::string &node, const std::string &) { return MayHave(node); },
+                *_posts,
+                [this](const std::string &node, const std::string &)
+                { return MayRequestPosts(_config, node); },
                 [this](const std::string &message) { return Offers(message); });
         }
         if (config.Record && !config.Record->Backfill.empty() && _target)
         {
             const auto last = std::chrono::duration_cast<std::chrono::seconds>(config.Record->BackfillLast);
             _streams = std::make_shared<SeriesStreams>(config, _target, _ledger);
+            _target->TakeOver(config.Record->Backfill);
             _requester = std::make_unique<Requester>(*_ledger, last, SystemRandom());
             _mail->OnMirrored = [streams = _streams](const GatewayTap::MirroredSample &sample)
             { streams->TakeLive(sample); };
@@ -96,6 +95,10 @@ public:
     void Work()
     {
         const Duration now = _manager.GetWorkspace().GetClock().Monotonic();
+        if (_requester)
+        {
+            LookAtDisk(now);
+        }
         const auto queue = _manager.GetManagerMessageQueue();
         for (std::shared_ptr<RabitMessage> message; queue->GetMessage(message);)
         {
@@ -114,17 +117,19 @@ public:
         }
         for (Mail::Letter &letter : _mail->Take())
         {
-            if (letter.Answered && _requester)
+            // Answers leave out the posts that this node had when it asked. While the disk fails these may be
+            // lost: the answers are dropped, and requested anew.
+            if (letter.Answered && _requester && !_isPaused)
             {
                 TakeAnswer(letter.Node, *letter.Answered, now);
             }
-            else if (letter.Asked && _questions.size() < MostQuestions)
+            else if (letter.Asked)
             {
-                _questions.emplace_back(letter.Node, std::move(*letter.Asked));
+                static_cast<void>(_questions.Add(letter.Node, std::move(*letter.Asked)));
             }
         }
-        AnswerQuestions();
-        if (_requester && MayRequest(now))
+        AnswerQuestions(now);
+        if (_requester && !_isPaused)
         {
             for (const Requester::Asking &asking : _requester->Due(now))
             {
@@ -152,11 +157,6 @@ private:
         return config;
     }
 
-    bool MayHave(const std::string &node) const
-    {
-        const auto &allowed = _config.Record->BackfillTo;
-        return allowed ? MatchesAny(*allowed, node) : !_config.Security;
-    }
     bool Offers(const std::string &message) const
     {
         const RecordSettings &record = *_config.Record;
@@ -167,27 +167,17 @@ private:
     // Nothing is requested that could not be recorded. When the disk has failed nobody knows which posts are
     // on it: once it works again, the ledger is read from the recordings anew. Until then no post goes to the
     // recorder, so that these are complete.
-    bool MayRequest(Duration now)
+    void LookAtDisk(Duration now)
     {
-        if (!_target->Status().Problem.empty())
-        {
-            _isPaused = true;
-            _streams->SetPaused(true);
-            _worksSince.reset();
-        }
-        else if (_isPaused && !_worksSince)
-        {
-            _worksSince = now;
-        }
-        else if (_isPaused && now - *_worksSince >= AllIsOnDisk)
+        const RecordingWatch::State state = _watch.Look(_target->Status(), now);
+        if (state == RecordingWatch::State::WorksAgain)
         {
             _ledger->Clear();
             ReadRecordings();
             _requester->StartOver(now);
-            _streams->SetPaused(false);
-            _isPaused = false;
         }
-        return !_isPaused;
+        _isPaused = state == RecordingWatch::State::Fails;
+        _streams->SetPaused(_isPaused);
     }
     void ReadRecordings()
     {
@@ -235,6 +225,13 @@ private:
             {
                 problems.push_back({"backfill", "", "nothing is requested, since nothing can be recorded"});
             }
+            if (const std::uint64_t count = _streams->Incredible(); count > 0)
+            {
+                problems.push_back({"backfill", "",
+                                    std::to_string(count) +
+                                        " posts were not recorded, since their times are " +
+                                        "not credible; compare the clocks of the nodes"});
+            }
         }
         const std::lock_guard lock(_told->Mutex);
         _told->Problems = std::move(problems);
@@ -257,20 +254,19 @@ private:
         }
     }
 
-    void AnswerQuestions()
+    void AnswerQuestions(Duration now)
     {
-        std::deque<std::pair<std::string, Question>> later;
-        for (auto &[node, question] : _questions)
-        {
-            if (_outbox.Answers(node) >= MostAnswers)
-            {
-                later.emplace_back(std::move(node), std::move(question));
-                continue;
-            }
-            // A refused answer is for a node that is gone: it asks again.
-            static_cast<void>(_outbox.Send(node, AnswerTo(node, question)));
-        }
-        _questions = std::move(later);
+        _questions.Answer(now,
+                          [this](const std::string &node, const Question &question)
+                          {
+                              if (_outbox.Answers(node) >= MostAnswers)
+                              {
+                                  return QuestionQueue::Outcome::Later;
+                              }
+                              return _outbox.Send(node, AnswerTo(node, question))
+                                         ? QuestionQueue::Outcome::Answered
+                                         : QuestionQueue::Outcome::Refused;
+                          });
     }
     Answer AnswerTo(const std::string &node, const Question &question)
     {
@@ -280,7 +276,7 @@ private:
         }
         if (_answers)
         {
-            _posts->SetIncarnation(_mail->Incarnation());
+            _posts->SetPresent(_mail->Incarnation(), _target->Now());
             return _answers->Of(node, question);
         }
         Answer answer;
@@ -304,9 +300,9 @@ private:
     const std::shared_ptr<Ledger> _ledger = std::make_shared<Ledger>();
     std::shared_ptr<SeriesStreams> _streams;  // null: nothing is requested
     std::unique_ptr<Requester> _requester;    // likewise
-    std::deque<std::pair<std::string, Question>> _questions;
+    QuestionQueue _questions;
+    RecordingWatch _watch;
     bool _isPaused = false;  // the disk failed
-    std::optional<Duration> _worksSince;
     const std::shared_ptr<Told> _told = std::make_shared<Told>();
 };
 

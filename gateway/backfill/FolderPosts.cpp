@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "backfill/RecordedSeries.h"
 
@@ -33,6 +34,11 @@ Stamp FolderPosts::Part::LastStamp() const
     return StampAt(Piece->LastLog, SourceToLog);
 }
 
+bool FolderPosts::IsPast(const RecordingIndex::File &file) const
+{
+    return file.NewestLog <= _now || file.NewestLog - _now <= SettledAfter;
+}
+
 // By incarnation; the oldest first.
 std::map<std::uint64_t, std::vector<FolderPosts::Part>> FolderPosts::PartsOf(const std::string &message) const
 {
@@ -42,15 +48,23 @@ std::map<std::uint64_t, std::vector<FolderPosts::Part>> FolderPosts::PartsOf(con
         const auto clock = file.Metadata.find("rabit.clock");
         std::uint64_t incarnation = 0;
         std::int64_t sourceToLog = 0;
-        if (!file.IsOwn || clock == file.Metadata.end() ||
+        if (!file.IsOwn || !IsPast(file) || clock == file.Metadata.end() ||
             !ReadNumber(TextAt(clock->second, "incarnation"), incarnation) ||
             !ReadNumber(TextAt(clock->second, "source_to_log_ns"), sourceToLog))
         {
             continue;
         }
+        std::set<std::uint16_t> channels;
+        for (const auto &[number, channel] : file.Channels)
+        {
+            if (channel.Topic == _node + "/" + message)
+            {
+                channels.insert(number);
+            }
+        }
         for (const RecordingIndex::Piece &piece : file.Pieces)
         {
-            if (file.Channels.at(piece.Channel).Topic == _node + "/" + message)
+            if (channels.contains(piece.Channel))
             {
                 parts[incarnation].push_back({&file, &piece, sourceToLog});
             }
@@ -81,7 +95,7 @@ std::vector<PostsCodec::Span> FolderPosts::Spans(const std::string &message, std
     std::uint64_t newest = 0;
     for (const auto &[name, file] : _index.Files())
     {
-        newest = std::max(newest, file.IsOwn ? file.NewestLog : 0);
+        newest = std::max(newest, file.IsOwn && IsPast(file) ? file.NewestLog : 0);
     }
     last = std::min<std::uint64_t>(last, newest / 1'000'000'000);
     const std::uint64_t oldest = newest - last * 1'000'000'000;

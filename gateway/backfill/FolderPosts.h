@@ -21,8 +21,13 @@ public:
 
     FolderPosts(const std::string &folder, const std::string &node);
 
-    // The present incarnation: its recording is still being written.
-    void SetIncarnation(std::uint64_t incarnation) { _incarnation = incarnation; }
+    // The present incarnation, whose recording is still being written, and the log time now: files with
+    // later times, of a clock that was wrong, are left out.
+    void SetPresent(std::uint64_t incarnation, std::uint64_t now)
+    {
+        _incarnation = incarnation;
+        _now = now;
+    }
 
     std::vector<PostsCodec::Span> Spans(const std::string &message, std::uint64_t last) override;
     Found Read(const std::string &message, std::uint64_t incarnation, Range range,
@@ -43,7 +48,10 @@ private:
 
     const std::string _node;
     RecordingIndex _index;
+    bool IsPast(const RecordingIndex::File &file) const;
+
     std::uint64_t _incarnation = 0;
+    std::uint64_t _now = ~std::uint64_t{0};
     std::map<std::pair<std::string, std::uint64_t>, Stamp> _firsts;  // by file and chunk
 };
 

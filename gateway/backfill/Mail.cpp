@@ -45,6 +45,7 @@ std::shared_ptr<Mail> Mail::For(GatewayConfig &config)
     SendRule rule;
     rule.Queue = QueueName;
     rule.Class = TrafficClass::Bulk;
+    rule.Expire = Expiry;
     config.Send.insert(config.Send.begin(), rule);
     auto mail = std::make_shared<Mail>(config.Tap);
     config.Tap = mail;

@@ -5,6 +5,7 @@
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/gateway/GatewayTap.h>
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -24,6 +25,9 @@ namespace Rabit::Backfill
 inline constexpr const char *QueueName = "Backfill";
 // Messages in it. While they wait, senders wait, too.
 inline constexpr int QueueCapacity = 64;
+// A message that waits for longer is not sent any more: by then the other end takes it for lost
+// (Requester::Patience, FileFetch::Patience).
+inline constexpr std::chrono::minutes Expiry(2);
 
 // Questions and answers that have come, with the nodes that sent them; a local queue does not tell these.
 // Also what else a gateway reports. Thread-safe.

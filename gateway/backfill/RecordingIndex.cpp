@@ -31,10 +31,12 @@ void RecordingIndex::Refresh(bool isOver)
 {
     std::set<std::string> present;
     std::error_code error;
+    const auto oldest = std::filesystem::file_time_type::clock::now() - LongestKept;
     for (const auto &entry : std::filesystem::directory_iterator(_folder, error))
     {
         const std::string name = entry.path().filename().string();
-        if (IsNamedAs(name, _node) && entry.is_regular_file(error) && !entry.is_symlink(error))
+        if (IsNamedAs(name, _node) && entry.is_regular_file(error) && !entry.is_symlink(error) &&
+            entry.last_write_time(error) >= oldest)
         {
             present.insert(name);
             File &file = _files[name];

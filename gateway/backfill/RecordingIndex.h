@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -20,6 +21,9 @@ namespace Rabit::Backfill
 class RecordingIndex
 {
 public:
+    // Files that were last written to before that are not read: no post is requested that is older than 24 h
+    // (GatewayConfig: `backfill_last`). The rest is for clocks that were adjusted.
+    static constexpr std::chrono::hours LongestKept{25};
     // Chunks that are kept in memory: successive questions are about the same ones.
     static constexpr std::size_t MostOpenChunks = 4;
 
@@ -51,8 +55,9 @@ public:
         std::uint64_t NewestLog = 0;  // of all channels
     };
 
-    // Looks for new files, and reads what has come. Files that are gone are forgotten. The last chunk of the
-    // newest file is left for later, since its indexes may still be being written, unless `isOver`.
+    // Looks for new files, and reads what has come. Files that are gone, and old ones, are forgotten. The
+    // last chunk of the newest file is left for later, since its indexes may still be being written, unless
+    // `isOver`.
     void Refresh(bool isOver = false);
     // By their names, the oldest first; only those of this node count.
     const std::map<std::string, File> &Files() const { return _files; }

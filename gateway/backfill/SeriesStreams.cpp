@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "backfill/CredibleTime.h"
 #include "names/QosProfileWords.h"
 
 namespace Rabit::Backfill
@@ -108,6 +109,11 @@ void SeriesStreams::TakeLive(const GatewayTap::MirroredSample &sample)
 bool SeriesStreams::TakeMissed(const Series &series, const Post &post, std::chrono::nanoseconds sourceToLocal)
 {
     const std::uint64_t time = _target->At(std::chrono::nanoseconds(post.SourceTime) + sourceToLocal);
+    if (!IsCredible(time, _target->Now(), _config.Record->BackfillLast))
+    {
+        ++_incredible;
+        return true;
+    }
     const std::uint32_t stream = StreamOf(series, false, static_cast<std::int64_t>(time) - post.SourceTime);
     return _target->Inbox().Put(
         {stream, static_cast<std::uint32_t>(StampOf(post.SourceTime)), time, time, post.Bytes});

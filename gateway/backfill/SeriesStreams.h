@@ -30,13 +30,15 @@ public:
     // A message that came live, if it is one of those and is not recorded yet.
     void TakeLive(const GatewayTap::MirroredSample &sample);
     // A post that was missed; false if there is no room for it. `sourceToLocal` relates its time to the
-    // monotonic clock here.
+    // monotonic clock here. A post whose time is not credible is dropped, and counted.
     bool TakeMissed(const Series &series, const Post &post, std::chrono::nanoseconds sourceToLocal);
     // A range that is whole from now on.
     void TakeWhole(const Series &series, Range range);
 
     // While paused no live message is recorded: it comes later.
     void SetPaused(bool isPaused) { _isPaused = isPaused; }
+
+    std::uint64_t Incredible() const { return _incredible; }
 
     bool IsBackfilled(std::string_view message) const { return _messages.contains(message); }
 
@@ -49,6 +51,7 @@ private:
     std::set<std::string, std::less<>> _messages;
     const std::uint32_t _marks;
     std::atomic<bool> _isPaused{false};
+    std::atomic<std::uint64_t> _incredible{0};
     std::mutex _mutex;
     std::map<std::pair<Series, bool>, std::uint32_t> _streams;
 };

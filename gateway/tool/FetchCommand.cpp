@@ -201,7 +201,13 @@ private:
         {
             if (letter.Answered && letter.Node == _options.Node)
             {
-                _part.Append(_fetch.Answered(*letter.Answered, now));
+                const std::uint64_t had = _fetch.Have();
+                const auto bytes = _fetch.Answered(*letter.Answered, now);
+                if (_fetch.Have() < had)
+                {
+                    _part.Empty();  // the file is shorter than the part
+                }
+                _part.Append(bytes);
             }
         }
         for (const Backfill::Question &question : _fetch.Due(now))

@@ -142,7 +142,7 @@ TEST_F(FolderPostsTest, AnEndedRecordingIsReadAsAWhole)
 
 TEST_F(FolderPostsTest, ThePresentRecordingIsWholeUpToASecondBeforeItsEnd)
 {
-    posts->SetIncarnation(7);
+    posts->SetPresent(7, Begin + 6 * Second);
     const auto file = NewFile(1);
     file->Post(1 * Second);
     file->Tick(4 * Second);
@@ -246,6 +246,34 @@ TEST_F(FolderPostsTest, EachIncarnationHasItsSpanAndOldOnesAreLeftOut)
     EXPECT_EQ(spans[0].Incarnation, 7U);
     EXPECT_EQ(spans[1].Incarnation, 8U);
     EXPECT_EQ(posts->Spans("Pose", 50).size(), 1U) << "only the last 50 seconds";
+}
+
+// Its clock was wrong, or is now. Else nothing of the present would be new enough.
+TEST_F(FolderPostsTest, ARecordingFromTheFutureIsLeftOut)
+{
+    const auto future = NewFile(1, 6);
+    future->Post(1'000'000 * Second);
+    future->End();
+    const auto present = NewFile(2);
+    present->Post(1 * Second);
+    present->Tick(4 * Second);
+    present->Tick(5 * Second);
+    posts->SetPresent(7, Begin + 6 * Second);
+    const auto spans = posts->Spans("Pose", 60);
+    ASSERT_EQ(spans.size(), 1U);
+    EXPECT_EQ(spans[0].Incarnation, 7U);
+    EXPECT_EQ(spans[0].Stamps.First, StampAfter(1 * Second));
+    EXPECT_EQ(spans[0].Stamps.End, StampAfter(3 * Second));
+}
+
+TEST_F(FolderPostsTest, AFileThatWasNotWrittenToForADayIsNotRead)
+{
+    const auto file = NewFile(1);
+    file->Post(1 * Second);
+    file->End();
+    const auto path = folder / "uav1_000001_20261123T024640Z.mcap";
+    std::filesystem::last_write_time(path, std::filesystem::last_write_time(path) - std::chrono::hours(26));
+    EXPECT_TRUE(posts->Spans("Pose", Always).empty());
 }
 
 TEST_F(FolderPostsTest, FilesOfOtherNodesAndOnesThatAreGoneDoNotCount)

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <algorithm>
+#include <string>
+
+#include "names/NamePattern.h"
+
+namespace Rabit::Backfill
+{
+
+// True if that node may request posts from the recording of this one. The configuration must say what to
+// record. Without `backfill_to`, nobody may if some path has keys.
+inline bool MayRequestPosts(const GatewayConfig &config, const std::string &node)
+{
+    if (config.Record->BackfillTo)
+    {
+        return MatchesAny(*config.Record->BackfillTo, node);
+    }
+    return !config.Security && std::none_of(config.Paths.begin(), config.Paths.end(),
+                                            [](const PathRule &path) { return path.Security.has_value(); });
+}
+
+}  // namespace Rabit::Backfill
