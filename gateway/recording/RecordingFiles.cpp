@@ -93,6 +93,7 @@ void RecordingFiles::Take(const RecordingInbox::Batch &batch, Time now)
         if (!isOpen || !Write(stream, item, item.LogTime))
         {
             Lose(stream, 1);
+            _status.NotKept += isOpen && _writer->IsGood() ? 0 : 1;  // else it is too large
         }
         KeepLast(stream, item);
         if (_writer && !_writer->IsGood())
@@ -307,6 +308,7 @@ void RecordingFiles::GiveUp(Time now, const std::string &problem)
     for (Stream &stream : _streams)
     {
         _status.Messages -= stream.Unsaved;
+        _status.NotKept += stream.Unsaved;
         Lose(stream, stream.Unsaved);
     }
     Forget();
@@ -443,7 +445,6 @@ void RecordingFiles::Lose(Stream &stream, std::uint64_t count)
     if (count > 0)
     {
         _status.Lost[stream.Info->Topic] += count;
-        _status.NotKept += count;
         _lossesChanged = true;
     }
 }
