@@ -3,7 +3,7 @@
 import re
 import subprocess
 
-# What CLI11 calls them, and people do not.
+# Headings of CLI11, and the words that people know.
 HEADINGS = {"Positionals": "Arguments", "Subcommands": "Commands"}
 COMMAND = re.compile(r"^  (\w+) {2,}(.*)$", re.MULTILINE)
 

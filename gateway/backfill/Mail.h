@@ -57,7 +57,7 @@ public:
 
     // The present incarnation of this node; 0: not known yet.
     std::uint64_t Incarnation() const;
-    // What is to be added to the source time of that incarnation of a node to get the monotonic time here. Of
+    // The difference to add to the source time of that incarnation of a node to get the monotonic time here. Of
     // an incarnation that was never heard, that of another one: wall clocks go on. Empty: neither is known.
     std::optional<std::chrono::nanoseconds> SourceToLocal(const std::string &node,
                                                           std::uint64_t incarnation) const;

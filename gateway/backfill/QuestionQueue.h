@@ -22,7 +22,7 @@ public:
     using Duration = std::chrono::nanoseconds;
 
     static constexpr std::size_t Most = 256;
-    // Of one node: one for each message, and the parts of files that it requests ahead.
+    // Most questions of one node: one for each message, and the parts of files that it requests ahead.
     static constexpr std::size_t MostOfANode = 32;
     // Time in which a question is answered again if its answer was refused, and the pause before each try.
     static constexpr Duration Patience = std::chrono::seconds(30);

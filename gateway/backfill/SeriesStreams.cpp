@@ -77,7 +77,7 @@ std::uint32_t SeriesStreams::StreamOf(const Series &series, bool isLive, std::in
     {
         stream.Metadata["rabit.qos"] = WordOf(*rule->Qos);
     }
-    // What was missed is over: it is not repeated at the beginning of later files.
+    // A missed State is over: it is not repeated at the beginning of later files.
     stream.IsState = isLive && type != nullptr && rule->Qos != QosProfile::Telemetry;
     const std::uint32_t number = _target->Inbox().AddStream(std::move(stream));
     _streams.emplace(std::pair(series, isLive), number);

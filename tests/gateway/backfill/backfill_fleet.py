@@ -76,7 +76,7 @@ class Fleet:
         while True:
             figures = [{**row, "node": node} for node in nodes for row in self.judge(node)]
             took = time.monotonic() - begin
-            # What is posted meanwhile is on its way, live.
+            # Posts that come meanwhile are on their way, live.
             if all(row["oldest_missing"] >= posts[row["node"], row["message"]] for row in figures):
                 return took, figures
             if took > seconds:
