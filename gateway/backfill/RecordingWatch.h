@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cstdint>
-#include <optional>
 
 #include "recording/RecordingFiles.h"
 
@@ -33,23 +32,25 @@ public:
         _notKept = status.NotKept;
         if (failed)
         {
+            _isDoubtful = true;
             _worksAt = now + AllIsOnDisk;
         }
-        if (!_worksAt)
+        if (!_isDoubtful)
         {
             return State::Works;
         }
-        if (now < *_worksAt)
+        if (now < _worksAt)
         {
             return State::Fails;
         }
-        _worksAt.reset();
+        _isDoubtful = false;
         return State::WorksAgain;
     }
 
 private:
     std::uint64_t _notKept = 0;
-    std::optional<Duration> _worksAt;  // unless it fails again; empty: it works
+    bool _isDoubtful = false;  // it failed, and not all is on the disk again
+    Duration _worksAt{0};      // unless it fails again
 };
 
 }  // namespace Rabit::Backfill
