@@ -142,7 +142,7 @@ TEST_F(FolderPostsTest, AnEndedRecordingIsReadAsAWhole)
 
 TEST_F(FolderPostsTest, ThePresentRecordingIsWholeUpToASecondBeforeItsEnd)
 {
-    posts->SetPresent(7, Begin + 6 * Second);
+    posts->SetPresent(7, Begin + 1000 * Second);
     const auto file = NewFile(1);
     file->Post(1 * Second);
     file->Tick(4 * Second);
