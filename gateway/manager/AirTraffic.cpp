@@ -153,9 +153,9 @@ void AirTraffic::Watch(Duration now)
     }
 }
 
-bool AirTraffic::IsBeatDue(Duration now) const
+bool AirTraffic::IsBeatWorth(Duration now) const
 {
-    return now >= _presence.BeatDue() || (!_config.Radio.Budget && _beats.IsWorthABeat(now));
+    return _beats.IsWorthABeat(now) && !_config.Radio.Budget;
 }
 
 std::size_t AirTraffic::SendBeat(std::size_t most, Duration now)
@@ -190,11 +190,13 @@ Duration AirTraffic::ServeUnlimited(Duration now)
     {
         _turns->SendNext();
     }
-    if (IsBeatDue(now))
+    Duration beatDue = _presence.BeatDue();
+    if (now >= beatDue || IsBeatWorth(now))
     {
         SendBeat(BeatFormat::Largest, now);
+        beatDue = _presence.BeatDue();
     }
-    Duration next = std::min({_presence.BeatDue(), _links.Service(), _types.Service(now)});
+    Duration next = std::min({beatDue, _links.Service(), _types.Service(now)});
     for (TopicPublisher &publisher : _publishers)
     {
         next = std::min(next, publisher.Service(Now()));
@@ -219,7 +221,7 @@ void AirTraffic::KeepPromise(Duration now)
 void AirTraffic::LookAtBeat(Duration now)
 {
     KeepPromise(now);
-    if (IsBeatDue(now))
+    if (now >= _presence.BeatDue() || IsBeatWorth(now))
     {
         _schedule.Ready(_beat, BeatBytes(now));
     }

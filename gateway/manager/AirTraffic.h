@@ -93,7 +93,7 @@ private:
     void SetLimit(Duration now);
     Duration ServeUnlimited(Duration now);
     Duration ServeLimited();
-    bool IsBeatDue(Duration now) const;
+    bool IsBeatWorth(Duration now) const;
     std::size_t BeatBytes(Duration now) const;
     std::size_t SendBeat(std::size_t most, Duration now);
     void KeepPromise(Duration now);

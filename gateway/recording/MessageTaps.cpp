@@ -73,7 +73,6 @@ bool EncodeByType(const MessageType &type, const RabitMessage &message, Mcap::By
 MessageTaps::MessageTaps(const GatewayConfig &config, RabitWorkspace &workspace,
                          std::shared_ptr<RecordingTarget> target)
     : _config(config),
-      _subscriptions(config.Subscribe),
       _workspace(workspace),
       _target(std::move(target)),
       _managers(_target->Inbox().AddStream(JsonStreams::Managers(config.Node)))
@@ -130,7 +129,7 @@ bool MessageTaps::IsTakenOver(const std::string &name) const
 void MessageTaps::AddSubscription(const SubscribeRule &rule)
 {
     const std::lock_guard lock(_mutex);
-    _subscriptions.push_back(rule);
+    _added.push_back(rule);
 }
 
 MessageTaps::Origin MessageTaps::OriginOf(const std::string &name) const
@@ -141,13 +140,17 @@ MessageTaps::Origin MessageTaps::OriginOf(const std::string &name) const
         const std::string node = name.substr(0, slash);
         const std::string message = name.substr(slash + 1);
         const std::lock_guard lock(_mutex);
-        const auto rule = std::find_if(_subscriptions.begin(), _subscriptions.end(),
-                                       [&](const SubscribeRule &one)
-                                       { return one.Message == message && MatchesAny(one.From, node); });
-        if (rule != _subscriptions.end())
+        // A program may go on adding rules to its configuration (FleetFollower).
+        for (const auto *rules : {&_config.Subscribe, &_added})
         {
-            return {node, message, true, rule->Qos != QosProfile::Telemetry,
-                    rule->Qos ? WordOf(*rule->Qos) : ""};
+            const auto rule = std::find_if(rules->begin(), rules->end(),
+                                           [&](const SubscribeRule &one)
+                                           { return one.Message == message && MatchesAny(one.From, node); });
+            if (rule != rules->end())
+            {
+                return {node, message, true, rule->Qos != QosProfile::Telemetry,
+                        rule->Qos ? WordOf(*rule->Qos) : ""};
+            }
         }
     }
     const auto rule = std::find_if(_config.Publish.begin(), _config.Publish.end(),

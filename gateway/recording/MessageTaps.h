@@ -46,7 +46,7 @@ private:
 
     const GatewayConfig &_config;
     mutable std::mutex _mutex;
-    std::vector<SubscribeRule> _subscriptions;  // guarded; of the configuration, and added ones
+    std::vector<SubscribeRule> _added;  // guarded; besides those of the configuration
     RabitWorkspace &_workspace;
     const std::shared_ptr<RecordingTarget> _target;
     struct Known

@@ -296,7 +296,8 @@ void AddFetchCommand(CLI::App &app, Chosen &chosen)
     AddCommonOptions(*command, options->Common, 10.0);
     command->add_option("--to", options->To, "Where it is put (default: its name, in this folder)");
     AddExamples(*command, {"rabit fetch uav1:uav1_000042_20261123T024640Z.mcap",
-                           "rabit fetch uav1:map.tif --to maps/uav1.tif"});
+                           "rabit fetch uav1:map.tif --to maps/uav1.tif",
+                           "rabit fetch uav1:flight.log --domain 7 --wait 60"});
     command->callback(
         [options, &chosen]
         {

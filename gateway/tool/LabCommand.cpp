@@ -99,9 +99,13 @@ void AddLabCommand(CLI::App &app, Chosen &chosen)
                                     "Folder of the results, which is made (default: lab/NAME_TIME)");
     run->add_flag("--check", options->Check, "Only check the scenario; nothing starts");
     run->add_flag("--docker", options->Docker, "Each node in a container");
-    AddExamples(*run, {"rabit lab run flight.yaml", "rabit lab run flight.yaml --to results --check"});
-    add("new", "Writes a scenario for the configurations in a folder", "FOLDER",
-        "The folder with NODE.yaml files", "The file, which is made (default: FOLDER/scenario.yaml)");
+    AddExamples(*run, {"rabit lab run flight.yaml", "rabit lab run flight.yaml --to results",
+                       "rabit lab run flight.yaml --check"});
+    const auto [made, ofNew] =
+        add("new", "Writes a scenario for the configurations in a folder", "FOLDER",
+            "The folder with NODE.yaml files", "The file, which is made (default: FOLDER/scenario.yaml)");
+    static_cast<void>(ofNew);
+    AddExamples(*made, {"rabit lab new .", "rabit lab new fleet", "rabit lab new fleet --to radio.yaml"});
 }
 
 }  // namespace Rabit::Tool

@@ -130,8 +130,8 @@ def commands_of(rabit, *before):
     """All commands of the program, as lists of words."""
     names = run(rabit, "complete", "--", *before, "").stdout.split()
     for name in [name for name in names if not name.startswith(":")]:
-        if name == "keys":
-            yield from commands_of(rabit, "keys")
+        if not before and name in ("keys", "lab"):
+            yield from commands_of(rabit, name)
         else:
             yield [*before, name]
 
