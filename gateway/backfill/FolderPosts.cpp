@@ -76,10 +76,11 @@ std::map<std::uint64_t, std::vector<FolderPosts::Part>> FolderPosts::PartsOf(con
 // The first message may have been posted long before the recording began.
 Stamp FolderPosts::FirstStamp(const Part &part)
 {
-    const auto [known, isNew] =
+    const auto placed =
         _firsts.try_emplace({part.File->Path + ":" + std::to_string(part.Piece->Channel), part.Piece->Offset},
                             std::numeric_limits<Stamp>::max());
-    if (isNew)
+    const auto known = placed.first;
+    if (placed.second)
     {
         _index.Visit(
             *part.File, *part.Piece,
