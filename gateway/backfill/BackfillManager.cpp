@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "backfill/AnswerTo.h"
 #include "backfill/FileAnswers.h"
 #include "backfill/FolderPosts.h"
 #include "backfill/Mail.h"
@@ -279,10 +280,7 @@ private:
             _posts->SetPresent(_mail->Incarnation(), _target->Now());
             return _answers->Of(node, question);
         }
-        Answer answer;
-        answer.kind = question.kind;
-        answer.number = question.number;
-        answer.name = question.name;
+        Answer answer = Backfill::AnswerTo(question);
         answer.incarnation = question.incarnation;
         answer.result = Result::UNKNOWN;
         return answer;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "backfill/AnswerTo.h"
 #include "backfill/FileHash.h"
 
 namespace Rabit::Backfill
@@ -43,10 +44,7 @@ bool IsPlainName(const std::string &name)
 
 Answer FileAnswers::Of(const std::string &node, const Question &question)
 {
-    Answer answer;
-    answer.kind = question.kind;
-    answer.number = question.number;
-    answer.name = question.name;
+    Answer answer = AnswerTo(question);
     answer.from = question.from;
     answer.to = question.from;
     if (_folder.empty() || !_mayFetch(node))

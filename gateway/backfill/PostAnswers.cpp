@@ -4,15 +4,14 @@
 #include <limits>
 #include <utility>
 
+#include "backfill/AnswerTo.h"
+
 namespace Rabit::Backfill
 {
 
 Answer PostAnswers::Of(const std::string &node, const Question &question)
 {
-    Answer answer;
-    answer.kind = question.kind;
-    answer.number = question.number;
-    answer.name = question.name;
+    Answer answer = AnswerTo(question);
     answer.incarnation = question.incarnation;
     answer.from = question.from;
     answer.to = question.to;

@@ -71,7 +71,6 @@ public:
     // Says goodbye; the endpoints and the session stay until Close.
     void SayGoodbye() { _presence.Close(); }
     void Close();
-    bool IsOpen() const { return _session != nullptr; }
 
     // Takes in what has come. The result is valid until the next call.
     const Presence::Served &TakeIn(Duration now)
@@ -119,7 +118,6 @@ public:
     // Adds the problems of this path alone.
     void AddProblems(Gateway::Fleet &fleet, Duration now) const;
 
-    const GatewayConfig &Config() const { return _config; }
     // Empty: the only one of a gateway without `paths`.
     std::string Name() const { return _config.Paths.empty() ? "" : _config.Paths.front().Name; }
     Presence &Beats() { return _presence; }

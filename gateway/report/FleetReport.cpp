@@ -23,9 +23,8 @@ Gateway::NodeStatus StatusOf(const PeerTable::Peer &peer, std::chrono::nanosecon
     status.reason = peer.Reason;
     status.replay = peer.IsReplay;
     status.incarnation = peer.Incarnation;
-    status.last_heard_s = std::max(0.0, Seconds(now - peer.LastHeard));
-    const auto roundTrip = peer.Clock.RoundTrip();
-    status.round_trip_s = roundTrip ? Seconds(*roundTrip) : std::numeric_limits<double>::quiet_NaN();
+    status.last_heard_s = LastHeardSeconds(peer, now);
+    status.round_trip_s = RoundTripSeconds(peer);
     return status;
 }
 
@@ -36,6 +35,17 @@ void AddProblem(const std::string &subject, const std::string &node, const std::
 }
 
 }  // namespace
+
+double LastHeardSeconds(const PeerTable::Peer &peer, std::chrono::nanoseconds now)
+{
+    return std::max(0.0, Seconds(now - peer.LastHeard));
+}
+
+double RoundTripSeconds(const PeerTable::Peer &peer)
+{
+    const auto roundTrip = peer.Clock.RoundTrip();
+    return roundTrip ? Seconds(*roundTrip) : std::numeric_limits<double>::quiet_NaN();
+}
 
 // FillNodes has sorted the rows by name.
 Gateway::NodeStatus *NodeIn(Gateway::Fleet &fleet, std::string_view node)

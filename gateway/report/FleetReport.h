@@ -16,6 +16,10 @@ namespace Rabit::FleetReport
 // are already in the message.
 void FillNodes(const PeersOverPaths &peers, std::chrono::nanoseconds now, Gateway::Fleet &fleet);
 
+// Seconds since its last beat arrived, and of a beat and its echo: NaN while unknown.
+double LastHeardSeconds(const PeerTable::Peer &peer, std::chrono::nanoseconds now);
+double RoundTripSeconds(const PeerTable::Peer &peer);
+
 // Returns the row of that node, by binary search; null if there is none. Only after FillNodes.
 Gateway::NodeStatus *NodeIn(Gateway::Fleet &fleet, std::string_view node);
 

@@ -3,26 +3,21 @@
 #include <rabit/gateway/ClassRates.h>
 
 #include <algorithm>
-#include <limits>
+
+#include "report/FleetReport.h"
 
 namespace Rabit::PathReport
 {
 namespace
 {
 
-double Seconds(std::chrono::nanoseconds duration)
-{
-    return std::chrono::duration<double>(duration).count();
-}
-
 Gateway::PathToNode RowOf(const std::string &path, const PeerTable::Peer &peer, std::chrono::nanoseconds now)
 {
     Gateway::PathToNode row;
     row.path = path;
     row.state = peer.State;
-    row.last_heard_s = std::max(0.0, Seconds(now - peer.LastHeard));
-    const auto roundTrip = peer.Clock.RoundTrip();
-    row.round_trip_s = roundTrip ? Seconds(*roundTrip) : std::numeric_limits<double>::quiet_NaN();
+    row.last_heard_s = FleetReport::LastHeardSeconds(peer, now);
+    row.round_trip_s = FleetReport::RoundTripSeconds(peer);
     return row;
 }
 

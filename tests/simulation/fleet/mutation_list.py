@@ -75,9 +75,8 @@ MUTATIONS = [
     Mutation("what waits is old", "AirTraffic.cpp", "_schedule.SetLimits(budget, carried, now);",
              "_schedule.SetLimits(budget, carried ? std::optional(100.0 * *carried) : std::nullopt, now);", THIN),
     Mutation("beats wait for ten seconds after a start", "AirTraffic.cpp",
-             "if (IsBeatDue(now)) { _schedule.Ready(",
-             "if (_schedule.SentBytes(_beat) + _schedule.SentBytes(TrafficClass::Telemetry) > 5000 && now >= _presence.BeatDue()) { "
-             "_schedule.Ready(",
+             "if (now >= _presence.BeatDue() || IsBeatWorth(now))",
+             "if (_schedule.SentBytes(_beat) + _schedule.SentBytes(TrafficClass::Telemetry) > 5000 && now >= _presence.BeatDue())",
              THIN),
     # Queue messages
     Mutation("a program that is no node has its say", "PresenceInbox.cpp", "IsNodeName(info.Node) &&", "", PARTS),
