@@ -248,6 +248,57 @@ TEST_F(AirTrafficTest, CommandsDoNotWaitForTelemetry)
     EXPECT_LE(waits[30], 80ms);
 }
 
+// The station's budget is full of a large State when it meets ten aircraft, which may send no second report
+// before the first acknowledgement.
+TEST_F(AirTrafficTest, ReportsToAStationThatIsBusyWithALargeValueArriveSoon)
+{
+    constexpr std::size_t size = 10;
+    std::vector<SimulatedNode *> aircraftOfFleet;
+    for (std::size_t i = 0; i < size; ++i)
+    {
+        GatewayConfig config = WithBudget(AircraftConfig("uav" + std::to_string(i)), 1500);
+        config.Subscribe.push_back({.Message = "Map", .Type = "Uav::Picture", .From = {"ground"}});
+        aircraftOfFleet.push_back(&fleet.Add(config));
+        static_cast<void>(aircraftOfFleet.back()->Register<Uav::Picture>("ground/Map"));
+    }
+    fleet.RunFor(10s);
+    GatewayConfig config = WithBudget(GroundConfig(), 5000);
+    config.Publish.push_back({.Message = "Map", .Type = "Uav::Picture"});
+    SimulatedNode &ground = fleet.Add(config);
+    IdleManager &commands = ground.AddIdleManager("Commands");
+    const auto map = ground.Register<Uav::Picture>("Map");
+    map->jpeg.resize(20'000);
+    std::vector<Duration> sentAt;
+    std::vector<Duration> waits;
+    for (Duration passed = 0s; passed < 30s; passed += Step)
+    {
+        if (passed % 12s == 0s)
+        {
+            map->PostMessage();
+        }
+        for (std::size_t i = 0; i < size; ++i)
+        {
+            auto report = std::make_shared<Uav::CommandAck>();
+            report->id = static_cast<std::uint32_t>(sentAt.size());
+            if (passed % 1s == i * 10ms && passed > 2s &&
+                aircraftOfFleet[i]->Workspace.AddMessageToQueue("ground/Commands", report))
+            {
+                sentAt.push_back(passed);
+            }
+        }
+        std::shared_ptr<RabitMessage> message;
+        while (commands.GetManagerMessageQueue()->GetMessage(message))
+        {
+            waits.push_back(passed - sentAt.at(std::dynamic_pointer_cast<Uav::CommandAck>(message)->id));
+        }
+        fleet.RunFor(Step);
+    }
+    EXPECT_GE(waits.size(), 270u);
+    std::sort(waits.begin(), waits.end());
+    EXPECT_LE(waits[waits.size() * 9 / 10], 100ms);
+    EXPECT_LE(waits.back(), 1s);
+}
+
 TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
 {
     GatewayConfig config = WithBudget(AircraftConfig("uav1"));
@@ -275,7 +326,7 @@ TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
 TEST_F(AirTrafficTest, AnIdleNodeWithABudgetCostsLessThanAHundredBytesASecond)
 {
     AddAircraft(WithBudget(AircraftConfig("uav1"), 1500));
-    fleet.Add(WithBudget(GroundConfig(), 1500));
+    fleet.Add(WithBudget(GroundConfig(), 4000));
     fleet.RunFor(60s);
     const std::uint64_t before = Bytes("uav1");
     fleet.RunFor(60s);
@@ -341,7 +392,7 @@ TEST_F(AirTrafficTest, APictureGoesThroughASmallBudgetBesidePosesWithinThreeMinu
     GatewayConfig config = WithBudget(AircraftConfig("uav1"), 1500);
     config.Send.push_back({.To = "*", .Queue = "Pictures", .Class = TrafficClass::Bulk});
     AddAircraft(config);
-    GatewayConfig station = WithBudget(GroundConfig(), 1500);
+    GatewayConfig station = WithBudget(GroundConfig(), 4000);
     station.Accept.push_back({.Queue = "Pictures", .Types = {"GatewayTest::Contact"}});
     SimulatedNode &ground = fleet.Add(station);
     IdleManager &pictures = ground.AddIdleManager("Pictures");

@@ -294,13 +294,13 @@ void PathControl::Restart()
     _pacedUntil = LinkTime(0);
     _rate = 0;
     _stalled = 0;
-    _answered = 0;
-    _usualAnswer = LinkTime(0);
 }
 
 void PathControl::Replace()
 {
     Restart();
+    _answered = 0;
+    _usualAnswer = LinkTime(0);
     _times = RoundTrip();
     _shortest = LinkTime(0);
     _queueingDelay = LinkTime(0);

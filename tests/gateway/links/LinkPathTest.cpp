@@ -281,13 +281,15 @@ TEST_F(PathTest, an_answer_that_came_late_since_an_earlier_one_was_lost_does_not
     }
 }
 
-TEST_F(PathTest, after_an_outage_it_does_not_know_when_the_peer_answers)
+TEST_F(PathTest, a_long_wait_leaves_how_late_the_peer_answers_and_another_path_does_not)
 {
     for (int i = 0; i < 5; ++i)
     {
         path.Answered(20s);
     }
     path.Restart();
+    EXPECT_EQ(path.ProbeTimeout(), settings.MaxResend);
+    path.Replace();
     EXPECT_EQ(path.ProbeTimeout(), settings.FirstResend);
 }
 

@@ -321,6 +321,26 @@ TEST_F(LinkSenderRules, S2_what_a_peer_is_used_to_answer_late_is_not_sent_again_
     }
 }
 
+TEST_F(LinkSenderRules, S2_answers_that_each_take_longer_than_the_longest_backoff_are_waited_for)
+{
+    Contact();
+    a.Pass(5s);
+    std::size_t sent = 0;
+    for (std::uint64_t number = 2; number < 12; ++number)
+    {
+        a.Live(1s);
+        a.Enqueue(Numbered(static_cast<int>(number)));
+        a.Pass(0ms);
+        const LinkTime first = a.Now;
+        a.Live(1400ms);  // The peer heard the repetitions, too, the last of them 400 ms ago.
+        StoredFrame ack = b.Ack(number);
+        ack.Fields.Echo = {PlayedPeer::ClockOfA, (first + 1s).count(), LinkTime(400ms).count()};
+        a.Hear(ack);
+        sent = SentTexts().size();
+    }
+    EXPECT_LE(sent, 2u) << "the last one, and once more after the longest backoff";
+}
+
 TEST_F(LinkSenderRules, S2_an_answer_that_echoes_a_later_frame_is_an_answer_and_no_reason_to_wait_for_long)
 {
     Contact();
