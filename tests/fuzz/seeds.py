@@ -74,6 +74,13 @@ def mcap():
     yield from recorded("RecordingBytesTest.cpp")
 
 
+def backfill():
+    """Stamps, a span, and posts, from a time in 2026."""
+    first = struct.pack("<Q", 1790000000000000000 >> 10 << 1)
+    for data in (b"\1\xe8\x07\xc0\x84\x3d", b"\7\x80\x80\x01\x05", b"\x05\3abc\xe8\x07\0\1\2xy"):
+        yield first + part(data)
+
+
 def idl():
     """Each file with each of its structs."""
     for file in sorted([*(ROOT / "idl" / "messages").glob("*.idl"), *(ROOT / "tests" / "idl" / "messages").glob("*.idl")]):
@@ -152,8 +159,8 @@ def mavlink():
     yield part(b"".join(frames)) + part(frames[0][:5]) + part(frames[0][5:])
 
 
-SEEDS = {"guard": guard, "cards": cards, "beats": beats, "announcements": beats, "links": links, "mcap": mcap, "idl": idl,
-         "json": json_values, "cdr": cdr, "yaml": yaml, "page": page, "mavlink": mavlink}
+SEEDS = {"guard": guard, "cards": cards, "beats": beats, "announcements": beats, "links": links, "backfill": backfill,
+         "mcap": mcap, "idl": idl, "json": json_values, "cdr": cdr, "yaml": yaml, "page": page, "mavlink": mavlink}
 
 
 def write(target, folder):
