@@ -417,8 +417,8 @@ void LinkDriver::SetExpiry(const std::string &node, const std::string &queue,
     _expiries.insert(_expiries.begin(), {.To = node, .Queue = queue, .Expire = expire});
 }
 
-bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, const std::string &type,
-                         const LinkPayload &payload, const Receipt &receipt)
+LinkRefusal LinkDriver::Enqueue(const std::string &node, const std::string &queue, const std::string &type,
+                                const LinkPayload &payload, const Receipt &receipt)
 {
     LinkEnqueued enqueued;
     bool sooner = false;
@@ -454,7 +454,7 @@ bool LinkDriver::Enqueue(const std::string &node, const std::string &queue, cons
     {
         _wake();
     }
-    return enqueued.Accepted();
+    return enqueued.Refusal;
 }
 
 void LinkDriver::Send(const LinkFrame &frame)

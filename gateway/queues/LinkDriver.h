@@ -115,10 +115,9 @@ public:
     void HeardOf(const std::string &node, std::uint64_t incarnation);
 
     // Accepts a message for a queue of another node; the receipt (may be null), which has had its Begin, gets
-    // the outcome. False: refused, because the link is full or there are too many; the receipt gets nothing.
-    // Any thread.
-    bool Enqueue(const std::string &node, const std::string &queue, const std::string &type,
-                 const LinkPayload &payload, const Receipt &receipt);
+    // the outcome. If it is refused, the receipt gets nothing. Any thread.
+    LinkRefusal Enqueue(const std::string &node, const std::string &queue, const std::string &type,
+                        const LinkPayload &payload, const Receipt &receipt);
 
     // Has messages for a queue of nodes that fit the pattern expire after that time, whatever the
     // configuration says, on links that are not in use yet. The last call that fits holds. Any thread.

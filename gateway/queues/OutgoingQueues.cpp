@@ -161,9 +161,10 @@ bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue
         TellRefused(node, queue, type, payload, answer.Reason);
         return Refuse(node, queue, answer.What, answer.Reason, receipt);
     }
-    if (!_links.Enqueue(node, queue, type.Name(), payload, receipt))
+    const LinkRefusal refusal = _links.Enqueue(node, queue, type.Name(), payload, receipt);
+    if (refusal != LinkRefusal::None)
     {
-        TellRefused(node, queue, type, payload, "too many messages for it wait here");
+        TellRefused(node, queue, type, payload, std::string(ToString(refusal)));
         return RefuseAtCall(receipt);  // counted by the link
     }
     _refusals.Forgive(node, queue);

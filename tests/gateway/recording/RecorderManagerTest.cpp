@@ -249,6 +249,18 @@ TEST_F(RecorderManagerTest, RecordsWhatIsRefusedAtTheCallAndWhy)
     EXPECT_THAT(outcome.at("reason").get<std::string>(), HasSubstr("uav9"));
 }
 
+TEST_F(RecorderManagerTest, RecordsWhichLimitAMessageExceeded)
+{
+    GatewayConfig config = Watching("uav1");
+    config.Send.push_back({.To = "*", .CapacityBytes = 1});
+    SimulatedNode &uav1 = AddRecorded(config);
+    Fleet.Add(AircraftConfig("uav2")).AddIdleManager("MissionControl");
+    Fleet.RunFor(3s);
+    EXPECT_FALSE(uav1.Workspace.AddMessageToQueue("uav2/MissionControl", std::make_shared<Uav::Goto>()));
+    const Recorded outcomes = RecordingOf("uav1").at("uav1/Recorder/Outcomes");
+    EXPECT_EQ(outcomes.JsonAt(0).at("reason"), "larger than the outbox");
+}
+
 TEST_F(RecorderManagerTest, RecordsManagersClocksAndTheLog)
 {
     AddRecorded(Watching("uav1"));

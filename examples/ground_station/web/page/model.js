@@ -14,7 +14,7 @@ const TARGET_SEEN_S = 30;
 const URGENCY = ['lost', 'stale', 'alarm', 'warning', 'waiting', 'up'];
 // Below these percentages an aircraft needs attention because of its battery.
 const BATTERY_ALARM = 10;
-const BATTERY_WARNING = 25;
+const BATTERY_WARNING = 25;  // percent; as FleetRow::BatteryWarning of the terminal
 
 // '', 'warning' or 'alarm'.
 export function batteryLevel(percent) {

@@ -130,7 +130,7 @@ struct TransportSettings
     std::chrono::milliseconds Lease{30000};
     std::chrono::milliseconds AnnouncementPeriod{10000};
     // A silent Rabit node is remembered for this long, so that discovery need not be repeated when it is
-    // back. For such nodes the lease holds only with security, or where samples do not go by multicast.
+    // back. It is remembered for the length of the lease alone with security, and without multicast.
     // Another session of the same node ends the former one once the former has been silent for some seconds.
     std::chrono::milliseconds Memory{std::chrono::hours(4)};
     // A vendor's own configuration file, for the expert; empty: none.
