@@ -6,6 +6,7 @@
 #include <rabit/idl/NearestWord.h>
 #include "Command.h"
 #include "FleetSession.h"
+#include "JsonText.h"
 #include "Samples.h"
 #include "Table.h"
 
@@ -117,7 +118,7 @@ private:
         }
         if (!_options.Common.Json)
         {
-            return Output::Line(Output::JsonText(value));
+            return Output::Line(JsonText(value));
         }
         return Output::Object({{"node", sample.Node},
                                {"message", _samples.Message()},

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "CommonOptions.h"
+#include "JsonText.h"
 #include "SafeText.h"
 
 namespace Rabit::Tool::Output
@@ -26,11 +27,6 @@ bool Noted(bool isWritten)
 }
 
 }  // namespace
-
-std::string JsonText(const nlohmann::ordered_json &value)
-{
-    return value.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace);
-}
 
 bool Line(std::string_view line)
 {

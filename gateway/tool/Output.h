@@ -18,8 +18,6 @@ bool Line(std::string_view line);
 int Ended(int code);
 // The same as Line, for several lines.
 bool Lines(const std::vector<std::string> &lines);
-// Returns the text of the value in one line, in ASCII.
-std::string JsonText(const nlohmann::ordered_json &value);
 // Writes one object in one line. Numbers that may be beyond 2^53 belong in it as strings: most readers of
 // JSON hold numbers as doubles, which would round them.
 bool Object(const nlohmann::ordered_json &object);

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <limits>
 
-#include "Output.h"
+#include "JsonText.h"
 
 namespace Rabit::Tool::LiveProtocol
 {
@@ -92,12 +92,12 @@ std::optional<std::string_view> ChosenOf(std::string_view asked)
 
 std::string ServerInfo(const std::string &name, const std::string &session)
 {
-    return Output::JsonText({{"op", "serverInfo"},
-                             {"name", name},
-                             {"capabilities", Json::array()},
-                             {"supportedEncodings", Json::array()},
-                             {"metadata", Json::object()},
-                             {"sessionId", session}});
+    return JsonText({{"op", "serverInfo"},
+                     {"name", name},
+                     {"capabilities", Json::array()},
+                     {"supportedEncodings", Json::array()},
+                     {"metadata", Json::object()},
+                     {"sessionId", session}});
 }
 
 std::string Advertise(std::span<const Channel> channels)
@@ -112,7 +112,7 @@ std::string Advertise(std::span<const Channel> channels)
                         {"schema", channel.SchemaText},
                         {"schemaEncoding", channel.SchemaEncoding}});
     }
-    return Output::JsonText({{"op", "advertise"}, {"channels", std::move(list)}});
+    return JsonText({{"op", "advertise"}, {"channels", std::move(list)}});
 }
 
 std::string Status(Level level, const std::string &message, const std::string &id)
@@ -122,7 +122,7 @@ std::string Status(Level level, const std::string &message, const std::string &i
     {
         status["id"] = id;
     }
-    return Output::JsonText(status);
+    return JsonText(status);
 }
 
 std::vector<std::uint8_t> MessageData(std::uint32_t subscription, std::uint64_t time,

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "Output.h"
+#include "JsonText.h"
 
 namespace Rabit::Tool
 {
@@ -174,7 +174,7 @@ std::optional<std::string> PanelMapping::Show(const std::string &node, const std
         constexpr int info = 2;
         shown.What["level"] = info;
     }
-    return Output::JsonText(shown.What);
+    return JsonText(shown.What);
 }
 
 std::string PanelMapping::WhyNot(const std::string &value) const
@@ -192,8 +192,7 @@ LiveProtocol::Channel Channel()
 
 std::string Line(std::uint64_t time, int level, const std::string &name, const std::string &message)
 {
-    return Output::JsonText(
-        {{"timestamp", TimeOf(time)}, {"level", level}, {"name", name}, {"message", message}});
+    return JsonText({{"timestamp", TimeOf(time)}, {"level", level}, {"name", name}, {"message", message}});
 }
 
 }  // namespace PanelLog
