@@ -1,5 +1,6 @@
 """What the tests of the installed package share: building projects outside the tree against it, and running them."""
 
+import os
 import pathlib
 import re
 import shutil
@@ -12,6 +13,8 @@ import harness  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 120
+# The exit code of `rabit lab run` where it is not allowed.
+LAB_IMPOSSIBLE = 3
 
 
 def run(*argv, fails=False, **options):
@@ -39,6 +42,20 @@ def build_template(cmake, folder, prefix):
     built = build(cmake, "project", folder, prefix)
     run(pathlib.Path(cmake).parent / "ctest", "--test-dir", built, "--output-on-failure", "--no-tests=error")
     print("ok: the template")
+
+
+def fly_template(folder, prefix):
+    """Flies the built template in the lab of the package, by the scenario that comes with it."""
+    done = subprocess.run([prefix / "bin" / "rabit", "lab", "run", "scenario.yaml", "--to", folder / "flight"],
+                          cwd=folder / "project", env=os.environ | {"PATH": f"{folder / 'project_build'}:{os.environ['PATH']}"},
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=LIMIT_S, check=False)
+    if done.returncode == LAB_IMPOSSIBLE:
+        print(f"skipped: the template in the lab: {done.stdout.strip()}")
+        return
+    report = folder / "flight" / "report.html"
+    if done.returncode != 0 or "scenario: passed" not in report.read_text(encoding="utf-8"):
+        sys.exit(f"the flight of the template ended with {done.returncode}:\n{done.stdout}")
+    print("ok: the template in the lab")
 
 
 def run_two_managers(program):

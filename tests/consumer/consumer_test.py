@@ -1,6 +1,6 @@
 """Installs the build into a prefix of its own, builds projects outside the tree against it, and runs their programs:
 two managers in a process, for each pair of backends that were built two nodes with messages of their own IDL, and the
-template with its test."""
+template with its test and its flight in the lab."""
 
 import pathlib
 import sys
@@ -24,6 +24,7 @@ def main():
             for second in transports:
                 consumer.exchange(programs / "node", first, second)
         consumer.build_template(cmake, folder, folder / "prefix")
+        consumer.fly_template(folder, folder / "prefix")
 
 
 if __name__ == "__main__":
