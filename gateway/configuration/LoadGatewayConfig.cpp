@@ -329,7 +329,13 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
 GatewayConfig ParseGatewayConfig(const std::string &text, const std::string &name,
                                  const std::string &nodeOverride)
 {
-    return ConfigOf(OpenText(name, text), name, nodeOverride, WhyNotLinked);
+    return ParseGatewayConfig(text, name, nodeOverride, WhyNotLinked);
+}
+
+GatewayConfig ParseGatewayConfig(const std::string &text, const std::string &name,
+                                 const std::string &nodeOverride, const TypeCheck &whyNoType)
+{
+    return ConfigOf(OpenText(name, text), name, nodeOverride, whyNoType);
 }
 
 }  // namespace Rabit

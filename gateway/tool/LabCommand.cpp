@@ -5,9 +5,11 @@
 
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <system_error>
@@ -78,6 +80,59 @@ std::vector<std::string> WordsOf(const char *command, const Options &options)
     return words;
 }
 
+// Of `rabit lab replay`: the name, the word for its value, and the text.
+constexpr std::array<std::array<const char *, 3>, 9> RadioOptions = {{
+    {"--radio", "RATE", "Of the channel, which all share, as 57.6kbit/s (default: unlimited)"},
+    {"--loss", "SHARE", "Of the datagrams, at each receiver, as 10% (default: 0%)"},
+    {"--delay", "TIME", "Of each datagram after the air, as 20ms (default: 0s)"},
+    {"--jitter", "TIME", "Longer at most, as 5ms (default: 0s)"},
+    {"--queue", "SIZE", "That waits at each node's radio at most (default: 16kB)"},
+    {"--overhead", "SIZE", "That each frame takes in addition (default: 0B)"},
+    {"--budget", "RATE", "Of each node, as 1500B/s, or auto (default: as each node was configured)"},
+    {"--after", "TIME", "Values are counted only from then on (default: 0s)"},
+    {"--seed", "NUMBER", "Of the random numbers (default: 1)"},
+}};
+
+void AddReplay(CLI::App &lab, Chosen &chosen)
+{
+    struct Replayed
+    {
+        std::vector<std::string> Files;
+        std::map<std::string, std::string> Values;
+    };
+    const auto options = std::make_shared<Replayed>();
+    CLI::App *command =
+        lab.add_subcommand("replay", "Flies a recorded flight over another radio, in simulated time");
+    command->add_option("FILE", options->Files, "Recordings on one time line, as the flight.mcap of a run")
+        ->required();
+    for (const auto &[name, word, what] : RadioOptions)
+    {
+        command->add_option(name, options->Values[name], what)->option_text(word);
+    }
+    command->add_option("--to", options->Values["--to"],
+                        "Folder of the results, which is made (default: lab/NAME_TIME)");
+    command->callback(
+        [options, &chosen]
+        {
+            chosen.RunToEnd = [options]
+            {
+                std::vector<std::string> words = {"replay"};
+                words.insert(words.end(), options->Files.begin(), options->Files.end());
+                for (const auto &[name, value] : options->Values)
+                {
+                    if (!value.empty())
+                    {
+                        words.insert(words.end(), {name, value});
+                    }
+                }
+                return Become(std::move(words));
+            };
+        });
+    AddExamples(*command, {"rabit lab replay lab/flight/flight.mcap --radio 57.6kbit/s",
+                           "rabit lab replay flight.mcap --radio 250kbit/s --loss 10% --budget 5kB/s",
+                           "rabit lab replay flight.mcap --radio 1Mbit/s --after 10s --to results"});
+}
+
 }  // namespace
 
 void AddLabCommand(CLI::App &app, Chosen &chosen)
@@ -106,6 +161,7 @@ void AddLabCommand(CLI::App &app, Chosen &chosen)
             "The folder with NODE.yaml files", "The file, which is made (default: FOLDER/scenario.yaml)");
     static_cast<void>(ofNew);
     AddExamples(*made, {"rabit lab new .", "rabit lab new fleet", "rabit lab new fleet --to radio.yaml"});
+    AddReplay(*lab, chosen);
 }
 
 }  // namespace Rabit::Tool

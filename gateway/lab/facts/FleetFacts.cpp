@@ -34,6 +34,11 @@ std::vector<FleetFacts::Json> FleetFacts::Look(std::span<const std::uint8_t> sam
     {
         return {};
     }
+    return Look(fleet);
+}
+
+std::vector<FleetFacts::Json> FleetFacts::Look(const Gateway::Fleet &fleet)
+{
     std::vector<Json> facts;
     if (_incarnation != fleet.incarnation)
     {

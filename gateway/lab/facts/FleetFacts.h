@@ -28,6 +28,7 @@ public:
     //   {"fact": "air", "used": B/s, "budget": B/s, "capacity": B/s}     with each message
     // Nothing if the bytes are no such message.
     std::vector<Json> Look(std::span<const std::uint8_t> sample);
+    std::vector<Json> Look(const Gateway::Fleet &fleet);
 
 private:
     struct Peer

@@ -166,16 +166,17 @@ class Flight:
         elif kind == "air":
             self.air[life.node].append((time, fact["used"], fact["budget"], fact["capacity"]))
 
-    def ages(self, observer, origin, message, begin, end):
+    def ages(self, observer, origin, message, begin, end, since=0.0):
         """How old `origin`/`message` was at the observer: [(from, to, age at the beginning)]. Ages grow by 1 s each second.
-        Before the first value of a life the age is the time that the life has waited. Times without the observer are left
-        out."""
+        Before the first value of a life the age is the time that the life has waited, from `since` on. Times without the
+        observer are left out."""
         pieces = []
         for index, life in enumerate(self.lives):
             if life.node != observer or not life.recorded:
                 continue
             values = sorted(self.values.get((index, origin, message), []))
-            marks = [(life.began, life.began)] + values
+            waits = max(life.began, since)
+            marks = [(waits, waits)] + values
             last = min(life.ended if life.ended is not None else FOREVER, end)
             for (at, posted), (until, _) in zip(marks, marks[1:] + [(last, 0)]):
                 start, stop = max(at, begin), min(until, last)
@@ -203,16 +204,18 @@ def without(gaps, begin, end):
 
 
 def age_below(pieces, share):
-    """The age that was not exceeded for that share of the time, in s."""
-    total = sum(last - first for first, last, _ in pieces)
-    if not pieces or total <= 0:
+    """The age that was not exceeded for that share of the time, in s. Each piece passes through its ages at 1 s each second."""
+    left = share * sum(last - first for first, last, _ in pieces)
+    if left <= 0:
         return None
-    low, high = min(age for _, _, age in pieces), max(age + last - first for first, last, age in pieces)
-    for _ in range(60):
-        middle = (low + high) / 2
-        below = sum(min(max(middle - age, 0), last - first) for first, last, age in pieces)
-        low, high = (low, middle) if below >= share * total else (middle, high)
-    return high
+    edges = sorted([(age, 1) for _, _, age in pieces] + [(age + last - first, -1) for first, last, age in pieces])
+    passing, before = 0, edges[0][0]
+    for age, change in edges:
+        if passing * (age - before) >= left:
+            return before + left / passing
+        left -= passing * (age - before)
+        passing, before = passing + change, age
+    return before
 
 
 def oldest(pieces):

@@ -7,17 +7,17 @@ import secrets
 import shutil
 import sys
 
-from rabit_lab import cage, containers, network, new, runner, scenario as scenarios, table, tools
+from rabit_lab import cage, containers, network, new, runner, scenario as scenarios, table, tools, what_if
 from rabit_lab.marked import ScenarioError
 from rabit_lab.radio import Unsupported
 
 GOOD, FAILED, USAGE, IMPOSSIBLE, INTERRUPTED = 0, 1, 2, 3, 130
 
 
-def folder_for(scenario, wanted):
+def folder_for(name, wanted):
     """A new folder for the results."""
     now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y%m%dT%H%M%SZ")
-    path = pathlib.Path(wanted) if wanted else pathlib.Path("lab", f"{scenario.path.stem}_{now}")
+    path = pathlib.Path(wanted) if wanted else pathlib.Path("lab", f"{name}_{now}")
     if path.exists() and any(path.iterdir()):
         raise ScenarioError(path, "is there already; name another folder with --to")
     path.mkdir(parents=True, exist_ok=True)
@@ -36,7 +36,7 @@ def run(options):
         raise ScenarioError(f"{options.scenario}:{bare[0].line}", f"node {bare[0].name} has no `image`, which --docker needs")
     has_images = len(bare) < len(scenario.nodes)
     found = tools.find()
-    folder = folder_for(scenario, options.to)
+    folder = folder_for(scenario.path.stem, options.to)
     label = f"rabit-lab-{secrets.token_hex(4)}" if has_images else None
     code = IMPOSSIBLE
     try:
@@ -73,6 +73,17 @@ def make(options):
     return GOOD
 
 
+def replay(options):
+    """`rabit lab replay`"""
+    found = tools.find()
+    radio = what_if.Radio.of(options)
+    flight = what_if.fly(found.replay, options.recording, radio)
+    folder = folder_for(f"{pathlib.Path(options.recording[0]).stem}_what_if", options.to)
+    what_if.show(flight, radio, folder)
+    print(f"\n{folder}/report.html")
+    return GOOD
+
+
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="rabit lab", description="Flies a fleet of one's own through a scenario.")
     commands = parser.add_subparsers(dest="command", required=True)
@@ -86,6 +97,12 @@ def parse(arguments):
     command.add_argument("folder", metavar="FOLDER")
     command.add_argument("--to", metavar="FILE", help="the file, which is made; default: FOLDER/scenario.yaml")
     command.set_defaults(act=make)
+    command = commands.add_parser("replay", help="fly a recorded flight over another radio, in simulated time")
+    command.add_argument("recording", metavar="FILE", nargs="+", help="recordings on one time line, as flight.mcap")
+    for option in what_if.OPTIONS:
+        command.add_argument(f"--{option.name}", metavar=option.word, help=option.text, default=option.default)
+    command.add_argument("--to", metavar="FOLDER", help="folder of the results; default: lab/NAME_TIME")
+    command.set_defaults(act=replay)
     return parser.parse_args(arguments)
 
 

@@ -104,14 +104,38 @@ def log_section(flight):
             f'<select id="kind"><option value="">all</option>{kinds}</select><table id="log">{rows}</table>{more}')
 
 
-def write(scenario, flight, verdicts, interrupted, merged, folder):
-    """`merged` is empty, or says why there is no flight.mcap."""
+def save_pictures(scenario, flight, folder):
+    """Writes them as files, and returns them all as one text for a page."""
     plots_folder = folder / "plots"
     plots_folder.mkdir(exist_ok=True)
     shown = ""
     for name, svg in pictures(scenario, flight):
         (plots_folder / f"{name}.svg").write_text(svg, encoding="utf-8")
         shown += svg
+    return shown
+
+
+def file_rows(folder, files):
+    """A table of those files that are there."""
+    rows = "".join(f"<tr><td>{name}</td><td>{text}</td></tr>" for name, text in files if (folder / name).exists())
+    return f"<table>{rows}</table>"
+
+
+def write_page(path, title, good, summary, sections):
+    """`sections`: [(heading, HTML)]; one of them has the log."""
+    shown = "".join(f"<h2>{heading}</h2><section>{content}</section>\n" for heading, content in sections)
+    path.write_text(f"""<!doctype html>
+<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<title>{escape(title)}</title><style>{STYLE}</style><main>
+<header class="{'good' if good else 'bad'}"><h1>{escape(title)}</h1>
+<p>{escape(summary)}</p></header>
+{shown}</main><script>{SCRIPT}</script></html>
+""", encoding="utf-8")
+
+
+def write(scenario, flight, verdicts, interrupted, merged, folder):
+    """`merged` is empty, or says why there is no flight.mcap."""
+    shown = save_pictures(scenario, flight, folder)
     good = not interrupted and all(verdict.good for verdict in verdicts)
     word = "interrupted" if interrupted else "passed" if good else "failed"
     wrong = sum(not verdict.good for verdict in verdicts)
@@ -122,19 +146,11 @@ def write(scenario, flight, verdicts, interrupted, merged, folder):
              ("records/", "the recordings of each life of each node"), ("observer/", "what one observer on the air heard"),
              ("log.txt", "the log below"), ("logs/", "the output of each node"), ("radio.json", "the channels' counters"),
              ("plots/", "the pictures above"), ("junit.xml", "the verdicts, for continuous integration")]
-    rows = "".join(f"<tr><td>{name}</td><td>{text}</td></tr>" for name, text in files if (folder / name).exists())
-    (folder / "report.html").write_text(f"""<!doctype html>
-<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width">
-<title>{escape(scenario.path.stem)}: {word}</title><style>{STYLE}</style><main>
-<header class="{'good' if good else 'bad'}"><h1>{escape(scenario.path.stem)}: {word}</h1>
-<p>{counted if not interrupted else "stopped by hand"} · {len(scenario.nodes)} nodes · {flight.end:.1f} s · {now}</p></header>
-<h2>Expectations</h2><section>{verdict_rows(scenario, verdicts)}{notes}</section>
-<h2>Events</h2><section>{event_rows(flight)}</section>
-<h2>Over time</h2><section><p class="faint">Dashed lines are events, grey times faults that last; point at them for
-their names.</p>{shown}</section>
-<h2>Channels</h2><section>{census(scenario, flight)}</section>
-<h2>Log</h2><section>{log_section(flight)}</section>
-<h2>Scenario</h2><section><pre>{escape((folder / 'scenario.yaml').read_text(encoding='utf-8'))}</pre></section>
-<h2>Files</h2><section><table>{rows}</table></section>
-</main><script>{SCRIPT}</script></html>
-""", encoding="utf-8")
+    write_page(folder / "report.html", f"{scenario.path.stem}: {word}", good,
+               f"{counted if not interrupted else 'stopped by hand'} · {len(scenario.nodes)} nodes · {flight.end:.1f} s · {now}",
+               [("Expectations", verdict_rows(scenario, verdicts) + notes), ("Events", event_rows(flight)),
+                ("Over time", '<p class="faint">Dashed lines are events, grey times faults that last; point at them for their '
+                              f"names.</p>{shown}"),
+                ("Channels", census(scenario, flight)), ("Log", log_section(flight)),
+                ("Scenario", f"<pre>{escape((folder / 'scenario.yaml').read_text(encoding='utf-8'))}</pre>"),
+                ("Files", file_rows(folder, files))])

@@ -13,6 +13,7 @@ class Tools:
     rabit: str
     radio: str
     facts: str
+    replay: str
     stepped_clock: str
 
 
@@ -20,7 +21,7 @@ def find():
     """RABIT_LAB_RABIT is the program `rabit`, RABIT_LAB_PROGRAMS the folder of the others."""
     rabit = os.environ.get("RABIT_LAB_RABIT", "rabit")
     folder = pathlib.Path(os.environ.get("RABIT_LAB_PROGRAMS", "."))
-    names = {"radio": "radio", "facts": "lab_facts", "stepped_clock": "libstepped_clock.so"}
+    names = {"radio": "radio", "facts": "lab_facts", "replay": "lab_replay", "stepped_clock": "libstepped_clock.so"}
     found = {}
     for key, name in names.items():
         path = next((p for p in (folder / name, pathlib.Path(rabit).parent / name) if p.exists()), None)

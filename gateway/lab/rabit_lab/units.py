@@ -37,6 +37,16 @@ def bits_per_second(value):
     return result
 
 
+def bytes_per_second(value):
+    """A budget, as in a configuration; `auto` is 0."""
+    if value == "auto":
+        return 0
+    result = _quantity(value, {"B/s": 1, "kB/s": 1e3, "MB/s": 1e6}, "auto, or bytes a second such as 1500B/s or 5kB/s")
+    if result <= 0:
+        raise ValueError(f"`{value}`: a budget is more than 0")
+    return result
+
+
 def size(value):
     """Bytes."""
     result = _quantity(value, {"": 1, "B": 1, "kB": 1e3, "MB": 1e6, "KiB": 1024, "MiB": 1024 ** 2},

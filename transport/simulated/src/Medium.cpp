@@ -9,6 +9,7 @@ namespace Rabit::Simulated
 bool Medium::Offer(Packet packet, std::chrono::nanoseconds now)
 {
     packet.At = now;
+    packet.Bytes += _settings.Overhead;
     if (!_onAir)
     {
         Begin(std::move(packet), now);

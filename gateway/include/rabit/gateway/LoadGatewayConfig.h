@@ -27,6 +27,8 @@ GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &node
 // name no place.
 GatewayConfig ParseGatewayConfig(const std::string &text, const std::string &name,
                                  const std::string &nodeOverride = "");
+GatewayConfig ParseGatewayConfig(const std::string &text, const std::string &name,
+                                 const std::string &nodeOverride, const TypeCheck &whyNoType);
 
 // The same for a program that is another node in that network, perhaps one that knows none of the types: the
 // sections publish, subscribe, accept, send and foreign of the file are ignored.

@@ -58,6 +58,8 @@ struct SimulatedMedium
     std::uint64_t BytesPerSecond = 0;
     // Capacity of a node's queue. A datagram for which there is no room is dropped.
     std::uint64_t QueueBytes = 16'000;
+    // Bytes of each datagram on the medium beyond its IP packet: 14 for the header of Ethernet.
+    std::uint64_t Overhead = 0;
 };
 
 // Statistics of a medium since its creation. Bytes are as on the air.

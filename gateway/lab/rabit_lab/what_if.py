@@ -1,0 +1,341 @@
+"""A recorded flight over another radio, in simulated time: `rabit lab replay`. The program lab_replay flies it, and tells what
+each node sent and received. Equal recordings, options and seeds give equal files."""
+
+import collections
+import dataclasses
+import json
+import pathlib
+import subprocess
+import typing
+
+from rabit_lab import flight as flights, plots, report, scenario as scenarios, table, units
+from rabit_lab.marked import ScenarioError
+
+ETHERNET = 14  # bytes that a frame of the lab's radio has before its IP packet
+
+
+@dataclasses.dataclass
+class Option:
+    """Of the command line."""
+    name: str
+    word: str
+    text: str
+    unit: typing.Callable
+    default: typing.Optional[str] = None
+
+
+OPTIONS = [
+    Option("radio", "RATE", "of the channel, which all share, as 57.6kbit/s; default: unlimited", units.bits_per_second, "unlimited"),
+    Option("loss", "SHARE", "of the datagrams, at each receiver, as 10%%; default: 0%%", units.percent, "0%"),
+    Option("delay", "TIME", "of each datagram after the air; default: 0s", units.length, "0s"),
+    Option("jitter", "TIME", "longer at most; default: 0s", units.length, "0s"),
+    Option("queue", "SIZE", "that waits at each node's radio at most; default: 16kB", units.size, "16kB"),
+    Option("overhead", "SIZE", "that each frame takes in addition; default: 0B", units.size, "0B"),
+    Option("budget", "RATE", "of each node, as 1500B/s, or auto; default: those of the recorded configurations",
+           units.bytes_per_second),
+    Option("after", "TIME", "only from then on values are counted; default: 0s", units.length, "0s"),
+    Option("seed", "NUMBER", "of the random numbers; default: 1", units.number, "1"),
+]
+
+
+@dataclasses.dataclass
+class Radio:
+    """The radio of a flight, and what else was asked for."""
+    radio: float
+    loss: float
+    delay: float
+    jitter: float
+    queue: int
+    overhead: int
+    budget: typing.Optional[float]
+    after: float
+    seed: float
+
+    @staticmethod
+    def of(options):
+        """Raises ScenarioError for an option that is no quantity."""
+        values = {}
+        for option in OPTIONS:
+            text = getattr(options, option.name)
+            try:
+                values[option.name] = option.unit(text) if text is not None else None
+            except ValueError as error:
+                raise ScenarioError(f"--{option.name}", str(error)) from None
+        return Radio(**values)
+
+    def text(self):
+        """As people read it."""
+        words = [f"{self.radio / 1000:g} kbit/s" if self.radio else "a radio without a limit"]
+        words += [f"{self.loss:g} % loss"] if self.loss else []
+        words += [f"{1000 * self.delay:g} ms delay"] if self.delay else []
+        words += [f"{1000 * self.jitter:g} ms jitter"] if self.jitter else []
+        if self.budget is not None:
+            words.append(f"a budget of {self.budget:g} B/s for each node" if self.budget else "no budget")
+        return ", ".join(words)
+
+    def argv(self):
+        words = {"rate": self.radio / 8, "queue": self.queue, "overhead": ETHERNET + self.overhead, "loss": self.loss,
+                 "delay": self.delay, "jitter": self.jitter, "budget": self.budget, "seed": int(self.seed)}
+        return [word for name, value in words.items() if value is not None for word in (f"--{name}", f"{value:.10g}")]
+
+
+@dataclasses.dataclass
+class Flown:
+    """A simulated flight, and the recorded one."""
+    simulated: flights.Flight
+    recorded: flights.Flight  # only its values
+    published: dict  # (life index, message) -> [(time, posts that the gateway saw, those that never went out)]
+    queues: list
+    medium: list
+
+
+def fly(program, files, radio):
+    """Runs lab_replay, and returns what it tells."""
+    done = subprocess.run([program, *files, *radio.argv()], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    if done.returncode != 0:
+        raise ScenarioError(files[0], done.stderr.strip().removeprefix(f"{files[0]}: ") or f"lab_replay ended with {done.returncode}")
+    facts = [json.loads(line) for line in done.stdout.splitlines()]
+    return read(files[0], facts, radio)
+
+
+def read(name, facts, radio):
+    """What the facts of lab_replay say."""
+    nodes = sorted({fact["node"] for fact in facts if fact["fact"] == "life"})
+    channel = scenarios.Network("radio", nodes, rate=radio.radio, queue=radio.queue)
+    made = scenarios.Scenario(pathlib.Path(name), pathlib.Path("."),
+                              {node: scenarios.Node(node, [], "", {}, 0.0, False, 0) for node in nodes}, {"radio": channel},
+                              facts[0]["end"] / 1e9, [], [], None)
+    flown = Flown(flights.Flight(made), flights.Flight(made), collections.defaultdict(list), [], [])
+    indexes = {}
+    for fact in facts:
+        kind = fact["fact"]
+        if kind == "life":
+            indexes[fact["file"]] = add_life(flown, fact)
+        elif kind == "note":
+            flown.simulated.notes.append(fact["text"])
+        elif kind == "medium":
+            flown.medium.append(fact)
+        elif kind == "queue":
+            flown.queues.append(fact)
+        elif kind == "publication":
+            flown.published[indexes[fact["file"]], fact["message"]].append((fact["t"] / 1e9, fact["offered"], fact["replaced"]))
+        elif kind == "flown":
+            add_recorded(flown.recorded, fact)
+        elif kind != "flight":
+            flown.simulated.take(fact, indexes[fact["file"]], lambda time: time / 1e9)
+    return flown
+
+
+def add_life(flown, fact):
+    """Returns its index."""
+    node, began = fact["node"], fact["t"] / 1e9
+    ended = fact["ended"] / 1e9 if fact["ended"] is not None else None
+    for flight in (flown.simulated, flown.recorded):
+        number = len(flight.lives_of(node)) + 1
+        flight.lives.append(flights.Life(node, number, began, ended=ended, code=0, by="in the recording", recorded=True))
+        if number > 1:
+            flight.faults.append(flights.Fault(began, began, "start", [node], f"{node} begins anew"))
+        if ended is not None:
+            flight.faults.append(flights.Fault(ended, ended, "kill", [node], f"the recording of {node} ends"))
+    return len(flown.simulated.lives) - 1
+
+
+def add_recorded(flight, fact):
+    """The values that a node received, to its lives."""
+    for arrived, posted in zip(fact["arrived"], fact["posted"]):
+        for index, life in enumerate(flight.lives):
+            if life.node == fact["at"] and life.is_there(arrived / 1e9):
+                flight.values[index, fact["node"], fact["message"]].append((arrived / 1e9, posted / 1e9))
+
+
+@dataclasses.dataclass
+class Row:
+    """A message, of all nodes at all others, or one stream of it."""
+    message: str
+    streams: int
+    posted: int
+    went_out: int
+    due: int  # arrivals, if nothing that went out is lost
+    arrived: int
+    delay_p90: float  # from the post to the arrival
+    p50: float
+    p90: float
+    worst: float
+    where: str
+    recorded_p90: float
+
+
+def streams(flown):
+    """{(observer, origin, message)} of both flights."""
+    return {(flight.lives[index].node, origin, message) for flight in (flown.simulated, flown.recorded)
+            for index, origin, message in flight.values if flight.lives[index].node != origin}
+
+
+def left_out(flown, origin, message, after):
+    """The share of the posts from that time on that never went out, since a newer one came first."""
+    offered = replaced = 0
+    for index, life in enumerate(flown.simulated.lives):
+        counts = flown.published.get((index, message), []) if life.node == origin else []
+        before = [count for count in counts if count[0] <= after] or [(0, 0, 0)]
+        if counts:
+            offered += counts[-1][1] - before[-1][1]
+            replaced += counts[-1][2] - before[-1][2]
+    return replaced / offered if offered else 0
+
+
+def row(flown, message, chosen, after):
+    """The figures of some streams of one message."""
+    simulated, recorded = flown.simulated, flown.recorded
+    mine, theirs, worst = [], [], (0.0, "")
+    out, posts, due, delays = {}, {}, 0, []
+    for observer, origin, _ in sorted(chosen):
+        posted = sorted(at for index, life in enumerate(simulated.lives) if life.node == origin
+                        for _, at in simulated.values.get((index, origin, message), []))
+        posts[origin] = sum(at >= after for at in posted)
+        out[origin] = round(posts[origin] * (1 - left_out(flown, origin, message, after)))
+        since = posted[0] if posted else 0.0
+        for pieces, flight in ((mine, simulated), (theirs, recorded)):
+            found = flight.ages(observer, origin, message, max(after, since), simulated.end, since)
+            pieces += found
+            if flight is simulated:
+                age, at = flights.oldest(found)
+                worst = max(worst, (age or 0.0, f"{origin} at {observer}, at {at or 0:.1f} s"))
+        due += out[origin]
+        delays += [at - sent for index, life in enumerate(simulated.lives) if life.node == observer
+                   for at, sent in simulated.values.get((index, origin, message), []) if sent >= after]
+    return Row(message, len(chosen), sum(posts.values()), sum(out.values()), due, len(delays), quantile(delays, 0.9),
+               flights.age_below(mine, 0.5), flights.age_below(mine, 0.9), worst[0], worst[1], flights.age_below(theirs, 0.9))
+
+
+def quantile(values, part):
+    """None of no values."""
+    ordered = sorted(values)
+    return ordered[min(int(part * len(ordered)), len(ordered) - 1)] if ordered else None
+
+
+def rows(flown, after):
+    """(one for each message, one for each stream)"""
+    by_message = collections.defaultdict(set)
+    for stream in streams(flown):
+        by_message[stream[2]].add(stream)
+    return ([row(flown, message, chosen, after) for message, chosen in sorted(by_message.items())],
+            [(stream, row(flown, message, {stream}, after)) for message, chosen in sorted(by_message.items())
+             for stream in sorted(chosen)])
+
+
+def seconds(value):
+    return "-" if value is None else f"{value:.2f} s"
+
+
+def share(part, whole):
+    return f"{100 * part / whole:.1f} %" if whole else "-"
+
+
+HEADS = ("message", "streams", "posted", "went out", "arrived", "delay p90", "age p50", "age p90", "oldest", "where",
+         "age p90 as recorded")
+
+
+def cells(one):
+    """In the order of HEADS."""
+    return (one.message, one.streams, one.posted, share(one.went_out, one.posted), share(one.arrived, one.due), seconds(one.delay_p90),
+            seconds(one.p50), seconds(one.p90), seconds(one.worst), one.where, seconds(one.recorded_p90))
+
+
+QUEUE_HEADS = ("from", "queue", "sent", "refused", "delivered", "other outcomes", "delay p50", "p90", "worst")
+
+
+def queue_cells(fact):
+    """In the order of QUEUE_HEADS."""
+    ages = [age / 1e9 for age in fact["ages"]]
+    others = ", ".join(f"{count} {name}" for name, count in fact["outcomes"].items() if name != "delivered")
+    return (fact["from"], f"{fact['to']}/{fact['queue']}", fact["sent"], fact["refused"], fact["outcomes"].get("delivered", 0), others,
+            *(seconds(quantile(ages, part)) for part in (0.5, 0.9, 1)))
+
+
+NODE_HEADS = ("node", "sends on average", "in its worst second", "budget", "lowest estimate of the channel")
+
+
+def node_cells(flown, node, after):
+    """What a node's limits left it, as its gateway tells."""
+    points = [point for point in flown.simulated.air.get(node, []) if point[0] >= after]
+    used = [point[1] for point in points] or [0]
+    budget = max((point[2] for point in points), default=0)
+    capacity = min((point[3] for point in points if point[3] > 0), default=0)
+    return (node, f"{sum(used) / len(used):.0f} B/s", f"{max(used):.0f} B/s", f"{budget:.0f} B/s" if budget else "none",
+            f"{capacity:.0f} B/s" if capacity else "not the limit")
+
+
+def medium_text(flown, radio):
+    """One line on the channel."""
+    last, end = flown.medium[-1], flown.simulated.end
+    frames = last["carried"] + last["dropped"]
+    text = f"{last['bytes'] * 8 / max(end, 1e-9) / 1000:.1f} kbit/s on the air"
+    if radio.radio:
+        text += (f", {share(last['bytes'] * 8, radio.radio * end)} used; queues dropped {share(last['dropped'], frames)} of the "
+                 f"frames; longest wait {seconds(last['longest_wait'] / 1e9)}")
+    return text
+
+
+def medium_pictures(flown, radio):
+    """The use of the channel over time, as SVG."""
+    points = [((second["t"] + first["t"]) / 2e9, (second["bytes"] - first["bytes"]) * 8e9 / (second["t"] - first["t"]))
+              for first, second in zip(flown.medium, flown.medium[1:])]
+    if not points:
+        return ""
+    scale, unit = (100 / radio.radio, "%") if radio.radio else (1e-3, "kbit/s")
+    return plots.lines("Use of the radio", flown.simulated, unit, {"on the air": [(time, scale * rate) for time, rate in points]})
+
+
+def html_table(heads, found):
+    shown = "".join("<tr>" + "".join(f'<td class="{"" if n == 0 else "number"}">{report.escape(cell)}</td>'
+                                     for n, cell in enumerate(line)) + "</tr>" for line in found)
+    return f"<table><tr>{''.join(f'<th>{head}</th>' for head in heads)}</tr>{shown}</table>"
+
+
+def print_table(heads, found):
+    """Columns as wide as their widest cell."""
+    lines = [[table.safe(cell) for cell in line] for line in (heads, *found)]
+    widths = [max(len(line[n]) for line in lines) for n in range(len(heads))]
+    for line in lines:
+        print("  ".join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip())
+
+
+def show(flown, radio, folder):
+    """Prints the figures, and writes the report."""
+    flight = flown.simulated
+    messages, single = rows(flown, radio.after)
+    nodes = [node_cells(flown, node, radio.after) for node in flight.scenario.nodes]
+    queues = [queue_cells(fact) for fact in flown.queues]
+    name = flight.scenario.path.stem
+    summary = f"{len(nodes)} nodes, {flight.end:.1f} s over {radio.text()}"
+    print(f"{name}: {summary}\n{medium_text(flown, radio)}\n")
+    print_table(HEADS, [cells(one) for one in messages])
+    if queues:
+        print()
+        print_table(QUEUE_HEADS, queues)
+    for note in flight.notes:
+        print(table.safe(note))
+    write_json(flown, radio, messages, single, folder / "what_if.json")
+    notes = "".join(f"<p>{report.escape(note)}</p>" for note in flight.notes)
+    stream_rows = [(f"{origin}/{message} at {observer}", *cells(one)[2:9], seconds(one.recorded_p90))
+                   for (observer, origin, message), one in single]
+    shown = report.save_pictures(flight.scenario, flight, folder)
+    sections = [("Messages", html_table(HEADS, [cells(one) for one in messages]) + notes)]
+    if queues:
+        sections.append(("Queues", html_table(QUEUE_HEADS, queues)))
+    sections += [("What the limits left each node", f"<p>{report.escape(medium_text(flown, radio))}</p>"
+                  + html_table(NODE_HEADS, nodes)),
+                 ("Over time", medium_pictures(flown, radio) + shown),
+                 ("Streams", html_table(("stream", *HEADS[2:9], HEADS[10]), stream_rows)),
+                 ("Log", report.log_section(flight)),
+                 ("Files", report.file_rows(folder, [("what_if.json", "the figures, for programs"), ("plots/", "the pictures above")]))]
+    report.write_page(folder / "report.html", f"{name}: what if", True, summary, sections)
+
+
+def write_json(flown, radio, messages, single, path):
+    """The figures, for programs."""
+    path.write_text(json.dumps({
+        "radio": dataclasses.asdict(radio), "seconds": flown.simulated.end, "medium": flown.medium[-1],
+        "messages": [dataclasses.asdict(one) for one in messages],
+        "streams": [{"at": observer, "node": origin} | dataclasses.asdict(one) for (observer, origin, _), one in single],
+        "queues": flown.queues}, indent=1), encoding="utf-8")

@@ -1,0 +1,319 @@
+#include "Recording.h"
+
+#include <rabit/base/NumberIn.h>
+#include <rabit/dynamic/DynamicType.h>
+#include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/idl/MessageTypeRegistry.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <stdexcept>
+
+#include "names/NamePattern.h"
+#include "names/QosProfileWords.h"
+#include "recording/mcap/MessageCursor.h"
+
+namespace Rabit::WhatIf
+{
+namespace
+{
+
+constexpr const char *FleetType = "Rabit::Gateway::Fleet";
+
+bool IsKnown(const std::string &type)
+{
+    return MessageTypeRegistry::Find(type) != nullptr;
+}
+
+bool IsMirrored(const std::string &kind)
+{
+    return kind == "mirrored" || kind == "knew";
+}
+
+// The node that recorded a channel.
+std::string RecorderOf(const Mcap::Contents &contents, const Mcap::Channel &channel)
+{
+    const std::string merged = Mcap::ValueOf(channel.Metadata, "rabit.recorded_by");
+    return merged.empty() ? Mcap::ValueOf(Mcap::MetadataOf(contents, "rabit.node"), "node") : merged;
+}
+
+std::string MessageOf(const Mcap::Channel &channel)
+{
+    const std::string named = Mcap::ValueOf(channel.Metadata, "rabit.message");
+    return named.empty() ? channel.Topic.substr(channel.Topic.find('/') + 1) : named;
+}
+
+Time TimeIn(const Mcap::TextMap &values, const std::string &key)
+{
+    return NumberIn<Time>(Mcap::ValueOf(values, key)).value_or(0);
+}
+
+bool Covers(const std::vector<std::string> &patterns, const std::string &name)
+{
+    return MatchesAny(patterns, name);
+}
+
+}  // namespace
+
+Recording::Recording(const std::vector<std::string> &names) : _names(names)
+{
+    std::vector<const Mcap::Contents *> contents;
+    std::vector<Replay::RecordedMessages::File> files;
+    for (const std::string &name : names)
+    {
+        _files.push_back(std::make_unique<Mcap::FileSource>(name));
+        if (!Mcap::IsRecording(*_files.back()))
+        {
+            throw std::runtime_error(name + ": is no recording: it does not begin as an MCAP file");
+        }
+        _contents.push_back(std::make_unique<Mcap::Contents>(Mcap::ReadContents(*_files.back())));
+        for (const std::string &problem : _contents.back()->Problems)
+        {
+            _notes.push_back(name + ": " + problem);
+        }
+        contents.push_back(_contents.back().get());
+        files.push_back({_files.back().get(), contents.back()});
+    }
+    _plan = Replay::PlanReplay(contents, {.Queues = {"*/*"}});
+    _messages = std::make_unique<Replay::RecordedMessages>(std::move(files), _plan);
+    RegisterTypes();
+    for (const auto &file : _contents)
+    {
+        FindUses(*file);
+    }
+    FindLives();
+    if (_lives.empty())
+    {
+        throw std::runtime_error(names.front() + ": it has no messages of nodes, so nothing can be flown");
+    }
+}
+
+void Recording::RegisterTypes()
+{
+    std::set<std::pair<std::string, std::string>> seen;
+    for (const auto &contents : _contents)
+    {
+        for (const auto &[id, schema] : contents->Schemas)
+        {
+            if (schema.Encoding != "omgidl" || schema.Name == FleetType ||
+                !seen.emplace(schema.Name, schema.Data).second)
+            {
+                continue;
+            }
+            const ParsedType parsed = DynamicType::Parse(schema.Data, schema.Name);
+            if (!parsed.Type)
+            {
+                _notes.push_back(schema.Name + " is not flown: " + parsed.Reason);
+            }
+            else if (DynamicType::Register(parsed.Type) == nullptr)
+            {
+                _notes.push_back(schema.Name + " was recorded in two versions; the second one is not flown");
+            }
+        }
+    }
+}
+
+void Recording::FindUses(const Mcap::Contents &contents)
+{
+    for (const auto &[id, channel] : contents.Channels)
+    {
+        const auto schema = contents.Schemas.find(channel.SchemaId);
+        const std::string recorder = RecorderOf(contents, channel);
+        if (recorder.empty() || schema == contents.Schemas.end() || schema->second.Name == FleetType ||
+            !IsKnown(schema->second.Name))
+        {
+            continue;
+        }
+        const std::string &type = schema->second.Name;
+        const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
+        Used &used = _used[recorder];
+        if (const std::string qos = Mcap::ValueOf(channel.Metadata, "rabit.qos");
+            kind == "posted" && qos != "none")
+        {
+            const std::string message = MessageOf(channel);
+            used.Publish[message] = {
+                .Message = message, .Type = type, .Qos = ProfileOf(qos).value_or(QosProfile::State)};
+        }
+        else if (IsMirrored(kind))
+        {
+            used.Receives[{Mcap::ValueOf(channel.Metadata, "rabit.node"), MessageOf(channel)}] = type;
+        }
+        else if (kind == "queue received")
+        {
+            used.QueueTypes[Mcap::ValueOf(channel.Metadata, "rabit.queue")].push_back(type);
+        }
+    }
+}
+
+void Recording::FindLives()
+{
+    for (const auto &contents : _contents)
+    {
+        std::map<std::pair<std::string, std::string>, std::string> texts;  // by node and life
+        for (const Mcap::Metadata &metadata : contents->MetadataRecords)
+        {
+            if (metadata.Name == "rabit.configuration")
+            {
+                texts[{Mcap::ValueOf(metadata.Values, "node"), Mcap::ValueOf(metadata.Values, "life")}] =
+                    Mcap::ValueOf(metadata.Values, "text");
+            }
+        }
+        bool isMerged = false;
+        for (const Mcap::Metadata &metadata : contents->MetadataRecords)
+        {
+            if (metadata.Name == "rabit.recording")
+            {
+                const std::string node = Mcap::ValueOf(metadata.Values, "node");
+                isMerged = true;
+                AddLife({node, TimeIn(metadata.Values, "begin_ns"), TimeIn(metadata.Values, "end_ns"),
+                         texts[{node, Mcap::ValueOf(metadata.Values, "life")}]});
+            }
+        }
+        if (!isMerged)
+        {
+            AddLife({Mcap::ValueOf(Mcap::MetadataOf(*contents, "rabit.node"), "node"),
+                     contents->Statistics.StartTime, contents->Statistics.EndTime,
+                     texts[std::pair(std::string(), std::string())]});
+        }
+    }
+    for (const std::string &node : _plan.Nodes)
+    {
+        if (std::none_of(_lives.begin(), _lives.end(),
+                         [&node](const RecordedLife &life) { return life.Node == node; }))
+        {
+            _notes.push_back(node +
+                             " did not record itself: only those of its messages are flown that "
+                             "another node received");
+            AddLife({node, _messages->First(), _messages->Last()});
+        }
+    }
+    std::stable_sort(_lives.begin(), _lives.end(),
+                     [](const RecordedLife &one, const RecordedLife &other)
+                     { return one.Begin < other.Begin; });
+}
+
+// Files that follow each other are parts of one recording.
+void Recording::AddLife(RecordedLife life)
+{
+    constexpr Time longestPause = 2'000'000'000;
+    if (!IsNodeName(life.Node) || life.End < life.Begin || life.End == 0)
+    {
+        return;
+    }
+    for (RecordedLife &known : _lives)
+    {
+        if (known.Node == life.Node && life.Begin <= known.End + longestPause &&
+            known.Begin <= life.End + longestPause && known.Configuration == life.Configuration &&
+            _names.size() > 1)
+        {
+            known.Begin = std::min(known.Begin, life.Begin);
+            known.End = std::max(known.End, life.End);
+            return;
+        }
+    }
+    _lives.push_back(std::move(life));
+}
+
+GatewayConfig Recording::ConfigOf(const RecordedLife &life) const
+{
+    GatewayConfig config;
+    config.Node = life.Node;
+    if (!life.Configuration.empty())
+    {
+        // Types that the recording does not have are taken out below.
+        config = ParseGatewayConfig(life.Configuration, "the recorded configuration of " + life.Node,
+                                    life.Node, [](const std::string &) { return std::string(); });
+    }
+    if (!config.Paths.empty())
+    {
+        const GatewayConfig first = PathConfigsOf(config).front();
+        config = first;
+        config.Paths.clear();
+    }
+    config.Security.reset();
+    config.Record.reset();
+    config.Fetch.reset();
+    config.Interfaces.clear();
+    config.Foreign.clear();
+    config.Panels.clear();
+    config.StateDir.clear();
+    config.BackendConfig.clear();
+    config.File.clear();
+    std::erase_if(config.Publish, [](const PublishRule &rule) { return !IsKnown(rule.Type); });
+    std::erase_if(config.Subscribe, [](const SubscribeRule &rule) { return !IsKnown(rule.Type); });
+    for (AcceptRule &rule : config.Accept)
+    {
+        std::erase_if(rule.Types, [](const std::string &type) { return !IsKnown(type); });
+    }
+    std::erase_if(config.Accept, [](const AcceptRule &rule) { return rule.Types.empty(); });
+
+    const auto used = _used.find(life.Node);
+    if (used == _used.end())
+    {
+        for (const Replay::ReplayStream &stream : _plan.Streams)
+        {
+            if (stream.What == Replay::ReplayStream::Kind::Message && stream.Node == life.Node &&
+                IsKnown(stream.Type))
+            {
+                config.Publish.push_back({.Message = stream.Name,
+                                          .Type = stream.Type,
+                                          .Qos = ProfileOf(stream.Qos).value_or(QosProfile::State)});
+            }
+        }
+        return config;
+    }
+    for (const auto &[message, rule] : used->second.Publish)
+    {
+        if (std::none_of(config.Publish.begin(), config.Publish.end(),
+                         [&](const PublishRule &known) { return known.Message == rule.Message; }))
+        {
+            config.Publish.push_back(rule);
+        }
+    }
+    for (const auto &[stream, type] : used->second.Receives)
+    {
+        if (std::none_of(config.Subscribe.begin(), config.Subscribe.end(),
+                         [&](const SubscribeRule &known)
+                         { return known.Message == stream.second && Covers(known.From, stream.first); }))
+        {
+            config.Subscribe.push_back({.Message = stream.second, .Type = type, .From = {stream.first}});
+        }
+    }
+    for (const auto &[queue, types] : used->second.QueueTypes)
+    {
+        if (std::none_of(config.Accept.begin(), config.Accept.end(),
+                         [&](const AcceptRule &known) { return known.Queue == queue; }))
+        {
+            config.Accept.push_back({.Queue = queue, .Types = types});
+        }
+    }
+    return config;
+}
+
+std::map<std::string, std::map<Recording::Stream, std::vector<Recording::Arrival>>> Recording::Arrivals()
+    const
+{
+    std::map<std::string, std::map<Stream, std::vector<Arrival>>> arrivals;
+    for (std::size_t file = 0; file < _files.size(); ++file)
+    {
+        const Mcap::Contents &contents = *_contents[file];
+        const auto wants = [&contents](std::uint16_t channel)
+        {
+            const auto found = contents.Channels.find(channel);
+            return found != contents.Channels.end() &&
+                   IsMirrored(Mcap::ValueOf(found->second.Metadata, "rabit.kind"));
+        };
+        Mcap::MessageCursor cursor(*_files[file], contents, {.Wants = wants});
+        while (const auto message = cursor.Next())
+        {
+            const Mcap::Channel &channel = contents.Channels.at(message->ChannelId);
+            arrivals[RecorderOf(contents, channel)]
+                    [{Mcap::ValueOf(channel.Metadata, "rabit.node"), MessageOf(channel)}]
+                        .push_back({message->LogTime, message->PublishTime});
+        }
+    }
+    return arrivals;
+}
+
+}  // namespace Rabit::WhatIf

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <rabit/gateway/GatewayConfig.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "recording/mcap/FileSource.h"
+#include "recording/mcap/McapContents.h"
+#include "recording/replay/RecordedMessages.h"
+#include "recording/replay/ReplayPlan.h"
+
+namespace Rabit::WhatIf
+{
+
+using Replay::Time;
+
+// One process of a node, from its first recorded message to its last.
+struct RecordedLife
+{
+    std::string Node;
+    Time Begin = 0;
+    Time End = 0;
+    // The text of its configuration file; empty: it was made in code.
+    std::string Configuration{};
+};
+
+// A recorded flight: the messages of its nodes on one time line, and how the nodes were configured.
+class Recording
+{
+public:
+    // Registers the types of the recording. Throws std::runtime_error if a file cannot be read, or if nothing
+    // in the files can be flown.
+    explicit Recording(const std::vector<std::string> &names);
+
+    const Replay::ReplayPlan &Plan() const { return _plan; }
+    Replay::RecordedMessages &Messages() { return *_messages; }
+    // By their beginnings. A node that only others recorded has one life, as long as the recording.
+    const std::vector<RecordedLife> &Lives() const { return _lives; }
+    // True if the node itself recorded.
+    bool IsRecorded(const std::string &node) const { return _used.contains(node); }
+
+    // The configuration of a node on a simulated network: that of its file, without keys, recordings, foreign
+    // topics and rules for types that nobody used, and completed by what the node published, received and
+    // accepted. Of several paths the first is left. Throws ConfigError.
+    GatewayConfig ConfigOf(const RecordedLife &life) const;
+
+    // When messages of another node arrived, and when they were posted, as the recorder knew it.
+    struct Arrival
+    {
+        Time At = 0;
+        Time Posted = 0;
+    };
+    using Stream = std::pair<std::string, std::string>;  // origin and message
+    // The recorded arrivals by the node that received them.
+    std::map<std::string, std::map<Stream, std::vector<Arrival>>> Arrivals() const;
+
+    const std::vector<std::string> &Notes() const { return _notes; }
+
+private:
+    // The names that a node used, as its recording tells.
+    struct Used
+    {
+        std::map<std::string, PublishRule> Publish;
+        std::map<Stream, std::string> Receives;                      // to type
+        std::map<std::string, std::vector<std::string>> QueueTypes;  // by queue
+    };
+
+    void RegisterTypes();
+    void FindLives();
+    void AddLife(RecordedLife life);
+    void FindUses(const Mcap::Contents &contents);
+
+    std::vector<std::string> _names;
+    std::vector<std::unique_ptr<Mcap::FileSource>> _files;
+    std::vector<std::unique_ptr<Mcap::Contents>> _contents;
+    Replay::ReplayPlan _plan;
+    std::unique_ptr<Replay::RecordedMessages> _messages;
+    std::vector<RecordedLife> _lives;
+    std::map<std::string, Used> _used;  // by node
+    std::vector<std::string> _notes;
+};
+
+}  // namespace Rabit::WhatIf

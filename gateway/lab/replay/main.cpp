@@ -1,0 +1,72 @@
+// lab_replay FILE...: flies recorded flights over a simulated radio, and writes what the nodes saw as JSON,
+// one object a line (SimulatedFlight.h).
+#include <rabit/RabitLog.h>
+#include <rabit/gateway/ConfigError.h>
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "Recording.h"
+#include "SimulatedFlight.h"
+
+namespace
+{
+
+std::chrono::nanoseconds OfSeconds(double seconds)
+{
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+}
+
+}  // namespace
+
+int main(int argc, char **argv)
+{
+    CLI::App app("Flies a recorded flight over another radio, in simulated time.");
+    std::vector<std::string> files;
+    double rate = 0;
+    double percent = 0;
+    double delay = 0;
+    double jitter = 0;
+    double budget = 0;
+    Rabit::WhatIf::FlightSettings settings;
+    app.add_option("FILE", files, "Recordings on one time line (MCAP)")->required();
+    app.add_option("--rate", rate, "Bytes a second of the radio, which all share; 0: no limit");
+    app.add_option("--queue", settings.Medium.QueueBytes, "Bytes that wait at each node's radio at most");
+    app.add_option("--overhead", settings.Medium.Overhead, "Bytes of each frame beyond its IP packet");
+    app.add_option("--loss", percent, "Percent of the datagrams, at each receiver");
+    app.add_option("--delay", delay, "Seconds that a datagram takes after the air");
+    app.add_option("--jitter", jitter, "Seconds that a datagram takes longer at most");
+    CLI::Option *limit =
+        app.add_option("--budget", budget, "Bytes a second of each node; 0: as the channel allows");
+    app.add_option("--seed", settings.Seed, "Of the random numbers");
+    CLI11_PARSE(app, argc, argv);
+    settings.Medium.BytesPerSecond = static_cast<std::uint64_t>(rate);
+    settings.Faults.Loss = percent / 100;
+    settings.Faults.Delay += OfSeconds(delay);
+    settings.Faults.Jitter = OfSeconds(jitter);
+    if (!limit->empty())
+    {
+        settings.Budget = budget;
+    }
+    Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Off);
+    try
+    {
+        Rabit::WhatIf::Recording recording(files);
+        Rabit::WhatIf::SimulatedFlight flight(
+            recording, settings,
+            [](const nlohmann::ordered_json &fact)
+            { std::cout << fact.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) << '\n'; });
+        flight.Run();
+    }
+    catch (const std::runtime_error &error)
+    {
+        std::cerr << error.what() << '\n';
+        return 2;
+    }
+    std::cout.flush();
+    return std::cout ? 0 : 1;
+}
