@@ -135,6 +135,7 @@ ALLOWED = {
     # The lab: its radio carries any program's frames, and its reader of recordings knows no network.
     "gateway/lab/radio": {"CLI11", "network"},
     "gateway/lab/facts": {"core", "idl", "idl dynamic", "gateway messages", "room mcap", "CLI11"},
+    "gateway/lab/replay": {"core", "base", "idl", "idl dynamic", "gateway", "testing", "room names", "room mcap", "room replay", "CLI11"},
     "docs/generate": {"room configuration"},
     "examples": {"backfill", "core", "idl", "factory", "gateway", "node", "recording", "gateway messages", "user messages", "CLI11",
                  "network", "yaml-cpp"},

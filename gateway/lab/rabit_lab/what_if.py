@@ -187,7 +187,7 @@ def row(flown, message, chosen, after):
     """The figures of some streams of one message."""
     simulated, recorded = flown.simulated, flown.recorded
     mine, theirs, worst = [], [], (0.0, "")
-    out, posts, due, delays = {}, {}, 0, []
+    out, posts, due, arrived, delays = {}, {}, 0, 0, []
     for observer, origin, _ in sorted(chosen):
         posted = sorted(at for index, life in enumerate(simulated.lives) if life.node == origin
                         for _, at in simulated.values.get((index, origin, message), []))
@@ -201,9 +201,11 @@ def row(flown, message, chosen, after):
                 age, at = flights.oldest(found)
                 worst = max(worst, (age or 0.0, f"{origin} at {observer}, at {at or 0:.1f} s"))
         due += out[origin]
-        delays += [at - sent for index, life in enumerate(simulated.lives) if life.node == observer
-                   for at, sent in simulated.values.get((index, origin, message), []) if sent >= after]
-    return Row(message, len(chosen), sum(posts.values()), sum(out.values()), due, len(delays), quantile(delays, 0.9),
+        came = [at - sent for index, life in enumerate(simulated.lives) if life.node == observer
+                for at, sent in simulated.values.get((index, origin, message), []) if sent >= after]
+        arrived += min(len(came), out[origin])  # a State comes again after an outage
+        delays += came
+    return Row(message, len(chosen), sum(posts.values()), sum(out.values()), due, arrived, quantile(delays, 0.9),
                flights.age_below(mine, 0.5), flights.age_below(mine, 0.9), worst[0], worst[1], flights.age_below(theirs, 0.9))
 
 

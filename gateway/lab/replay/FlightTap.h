@@ -40,7 +40,8 @@ struct QueueBook
     std::map<Link, Entry> Links;
 };
 
-// What one life of a node sends and receives in a simulated flight. Times count from its beginning.
+// Notes the messages that one life of a node sends and receives in a simulated flight. Times count from its
+// beginning.
 class FlightTap final : public GatewayTap
 {
 public:

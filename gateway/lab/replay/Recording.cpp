@@ -49,9 +49,34 @@ Time TimeIn(const Mcap::TextMap &values, const std::string &key)
     return NumberIn<Time>(Mcap::ValueOf(values, key)).value_or(0);
 }
 
-bool Covers(const std::vector<std::string> &patterns, const std::string &name)
+template <typename Rule>
+Rule *RuleFor(std::vector<Rule> &rules, const std::string &message)
 {
-    return MatchesAny(patterns, name);
+    const auto found = std::find_if(rules.begin(), rules.end(),
+                                    [&message](const Rule &rule) { return rule.Message == message; });
+    return found == rules.end() ? nullptr : &*found;
+}
+
+// Takes out the settings that a simulated network does not have.
+void FitToSimulation(GatewayConfig &config)
+{
+    config.Paths.clear();
+    config.Security.reset();
+    config.Record.reset();
+    config.Fetch.reset();
+    config.Interfaces.clear();
+    config.Foreign.clear();
+    config.Panels.clear();
+    config.StateDir.clear();
+    config.BackendConfig.clear();
+    config.File.clear();
+    std::erase_if(config.Publish, [](const PublishRule &rule) { return !IsKnown(rule.Type); });
+    std::erase_if(config.Subscribe, [](const SubscribeRule &rule) { return !IsKnown(rule.Type); });
+    for (AcceptRule &rule : config.Accept)
+    {
+        std::erase_if(rule.Types, [](const std::string &type) { return !IsKnown(type); });
+    }
+    std::erase_if(config.Accept, [](const AcceptRule &rule) { return rule.Types.empty(); });
 }
 
 }  // namespace
@@ -87,6 +112,14 @@ Recording::Recording(const std::vector<std::string> &names) : _names(names)
     {
         throw std::runtime_error(names.front() + ": it has no messages of nodes, so nothing can be flown");
     }
+    if (_messages->Last() - _messages->First() > Longest)
+    {
+        throw std::runtime_error(names.front() + ": it is longer than a day, and is not flown");
+    }
+    for (RecordedLife &life : _lives)
+    {
+        life.Config = ConfigOf(life);
+    }
 }
 
 void Recording::RegisterTypes()
@@ -120,28 +153,23 @@ void Recording::FindUses(const Mcap::Contents &contents)
     {
         const auto schema = contents.Schemas.find(channel.SchemaId);
         const std::string recorder = RecorderOf(contents, channel);
-        if (recorder.empty() || schema == contents.Schemas.end() || schema->second.Name == FleetType ||
-            !IsKnown(schema->second.Name))
+        if (!IsNodeName(recorder) || !IsMessageName(MessageOf(channel)) || schema == contents.Schemas.end() ||
+            schema->second.Name == FleetType || !IsKnown(schema->second.Name))
         {
             continue;
         }
         const std::string &type = schema->second.Name;
         const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
         Used &used = _used[recorder];
-        if (const std::string qos = Mcap::ValueOf(channel.Metadata, "rabit.qos");
-            kind == "posted" && qos != "none")
+        if (const std::string origin = Mcap::ValueOf(channel.Metadata, "rabit.node");
+            IsMirrored(kind) && IsNodeName(origin))
         {
-            const std::string message = MessageOf(channel);
-            used.Publish[message] = {
-                .Message = message, .Type = type, .Qos = ProfileOf(qos).value_or(QosProfile::State)};
+            used.Receives[{origin, MessageOf(channel)}] = type;
         }
-        else if (IsMirrored(kind))
+        else if (const std::string queue = Mcap::ValueOf(channel.Metadata, "rabit.queue");
+                 kind == "queue received" && IsMessageName(queue))
         {
-            used.Receives[{Mcap::ValueOf(channel.Metadata, "rabit.node"), MessageOf(channel)}] = type;
-        }
-        else if (kind == "queue received")
-        {
-            used.QueueTypes[Mcap::ValueOf(channel.Metadata, "rabit.queue")].push_back(type);
+            used.QueueTypes[queue].insert(type);
         }
     }
 }
@@ -215,77 +243,56 @@ void Recording::AddLife(RecordedLife life)
     _lives.push_back(std::move(life));
 }
 
-GatewayConfig Recording::ConfigOf(const RecordedLife &life) const
+GatewayConfig Recording::ConfigOf(const RecordedLife &life)
 {
     GatewayConfig config;
-    config.Node = life.Node;
     if (!life.Configuration.empty())
     {
-        // Types that the recording does not have are taken out below.
-        config = ParseGatewayConfig(life.Configuration, "the recorded configuration of " + life.Node,
-                                    life.Node, [](const std::string &) { return std::string(); });
-    }
-    if (!config.Paths.empty())
-    {
-        const GatewayConfig first = PathConfigsOf(config).front();
-        config = first;
-        config.Paths.clear();
-    }
-    config.Security.reset();
-    config.Record.reset();
-    config.Fetch.reset();
-    config.Interfaces.clear();
-    config.Foreign.clear();
-    config.Panels.clear();
-    config.StateDir.clear();
-    config.BackendConfig.clear();
-    config.File.clear();
-    std::erase_if(config.Publish, [](const PublishRule &rule) { return !IsKnown(rule.Type); });
-    std::erase_if(config.Subscribe, [](const SubscribeRule &rule) { return !IsKnown(rule.Type); });
-    for (AcceptRule &rule : config.Accept)
-    {
-        std::erase_if(rule.Types, [](const std::string &type) { return !IsKnown(type); });
-    }
-    std::erase_if(config.Accept, [](const AcceptRule &rule) { return rule.Types.empty(); });
-
-    const auto used = _used.find(life.Node);
-    if (used == _used.end())
-    {
-        for (const Replay::ReplayStream &stream : _plan.Streams)
+        try
         {
-            if (stream.What == Replay::ReplayStream::Kind::Message && stream.Node == life.Node &&
-                IsKnown(stream.Type))
-            {
-                config.Publish.push_back({.Message = stream.Name,
-                                          .Type = stream.Type,
-                                          .Qos = ProfileOf(stream.Qos).value_or(QosProfile::State)});
-            }
+            // Types that the recording does not have are taken out below.
+            const GatewayConfig read =
+                ParseGatewayConfig(life.Configuration, "its recorded configuration", life.Node,
+                                   [](const std::string &) { return std::string(); });
+            config = PathConfigsOf(read).front();
         }
-        return config;
-    }
-    for (const auto &[message, rule] : used->second.Publish)
-    {
-        if (std::none_of(config.Publish.begin(), config.Publish.end(),
-                         [&](const PublishRule &known) { return known.Message == rule.Message; }))
+        catch (const ConfigError &error)
         {
-            config.Publish.push_back(rule);
+            _notes.push_back(life.Node + " flies by what it used, since this version does not accept " +
+                             error.what());
         }
     }
-    for (const auto &[stream, type] : used->second.Receives)
+    config.Node = life.Node;
+    FitToSimulation(config);
+    for (const Replay::ReplayStream &stream : _plan.Streams)
     {
-        if (std::none_of(config.Subscribe.begin(), config.Subscribe.end(),
-                         [&](const SubscribeRule &known)
-                         { return known.Message == stream.second && Covers(known.From, stream.first); }))
+        if (stream.What == Replay::ReplayStream::Kind::Message && stream.Node == life.Node &&
+            IsKnown(stream.Type) && RuleFor(config.Publish, stream.Name) == nullptr)
+        {
+            config.Publish.push_back({.Message = stream.Name,
+                                      .Type = stream.Type,
+                                      .Qos = ProfileOf(stream.Qos).value_or(QosProfile::State)});
+        }
+    }
+    const Used &used = _used[life.Node];
+    for (const auto &[stream, type] : used.Receives)
+    {
+        SubscribeRule *const known = RuleFor(config.Subscribe, stream.second);
+        if (known == nullptr)
         {
             config.Subscribe.push_back({.Message = stream.second, .Type = type, .From = {stream.first}});
         }
+        else if (known->Type == type && !MatchesAny(known->From, stream.first))
+        {
+            known->From.push_back(stream.first);
+        }
     }
-    for (const auto &[queue, types] : used->second.QueueTypes)
+    for (const auto &[queue, types] : used.QueueTypes)
     {
         if (std::none_of(config.Accept.begin(), config.Accept.end(),
                          [&](const AcceptRule &known) { return known.Queue == queue; }))
         {
-            config.Accept.push_back({.Queue = queue, .Types = types});
+            config.Accept.push_back({.Queue = queue, .Types = {types.begin(), types.end()}});
         }
     }
     return config;

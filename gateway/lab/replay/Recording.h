@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,28 +28,27 @@ struct RecordedLife
     Time End = 0;
     // The text of its configuration file; empty: it was made in code.
     std::string Configuration{};
+    // For a simulated network: that of its file, without keys, recordings, foreign topics and rules for types
+    // that nobody used, and completed by what the node published, received and accepted. Of several paths the
+    // first is left.
+    GatewayConfig Config{};
 };
 
 // A recorded flight: the messages of its nodes on one time line, and how the nodes were configured.
 class Recording
 {
 public:
-    // Registers the types of the recording. Throws std::runtime_error if a file cannot be read, or if nothing
-    // in the files can be flown.
+    // Longest recording that is flown.
+    static constexpr Time Longest = Time{24} * 3600 * 1'000'000'000;
+
+    // Registers the types of the recording. Throws std::runtime_error if a file cannot be read, or if the
+    // files cannot be flown.
     explicit Recording(const std::vector<std::string> &names);
 
     const Replay::ReplayPlan &Plan() const { return _plan; }
     Replay::RecordedMessages &Messages() { return *_messages; }
     // By their beginnings. A node that only others recorded has one life, as long as the recording.
     const std::vector<RecordedLife> &Lives() const { return _lives; }
-    // True if the node itself recorded.
-    bool IsRecorded(const std::string &node) const { return _used.contains(node); }
-
-    // The configuration of a node on a simulated network: that of its file, without keys, recordings, foreign
-    // topics and rules for types that nobody used, and completed by what the node published, received and
-    // accepted. Of several paths the first is left. Throws ConfigError.
-    GatewayConfig ConfigOf(const RecordedLife &life) const;
-
     // When messages of another node arrived, and when they were posted, as the recorder knew it.
     struct Arrival
     {
@@ -62,18 +62,18 @@ public:
     const std::vector<std::string> &Notes() const { return _notes; }
 
 private:
-    // The names that a node used, as its recording tells.
+    // The messages and queue messages that a node received, as its recording tells.
     struct Used
     {
-        std::map<std::string, PublishRule> Publish;
-        std::map<Stream, std::string> Receives;                      // to type
-        std::map<std::string, std::vector<std::string>> QueueTypes;  // by queue
+        std::map<Stream, std::string> Receives;                   // to type
+        std::map<std::string, std::set<std::string>> QueueTypes;  // by queue
     };
 
     void RegisterTypes();
     void FindLives();
     void AddLife(RecordedLife life);
     void FindUses(const Mcap::Contents &contents);
+    GatewayConfig ConfigOf(const RecordedLife &life);
 
     std::vector<std::string> _names;
     std::vector<std::unique_ptr<Mcap::FileSource>> _files;

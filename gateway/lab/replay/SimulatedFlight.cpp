@@ -19,6 +19,9 @@ using Replay::ReplayStream;
 
 // Nodes that end this shortly before the last one, in nanoseconds, were told to end with it.
 constexpr Time EndsTogether = 2'000'000'000;
+// A message that was older than this when it was posted, in nanoseconds, is posted as old as this. Clocks of
+// simulated nodes begin at a few of these.
+constexpr Time OldestPost = 900'000'000'000;
 // Of looking at counters.
 constexpr Nanoseconds LookPeriod = std::chrono::seconds(1);
 
@@ -184,7 +187,7 @@ void SimulatedFlight::Start(std::size_t life)
     {
         End(known->second, true);
     }
-    GatewayConfig config = _recording.ConfigOf(recorded);
+    GatewayConfig config = recorded.Config;
     if (_settings.Budget)
     {
         config.Radio.Budget = *_settings.Budget > 0 ? _settings.Budget : std::nullopt;
@@ -299,7 +302,8 @@ void SimulatedFlight::Play(const Replay::ReplayItem &item)
     {
         return;
     }
-    const Nanoseconds age(static_cast<std::int64_t>(item.LogTime - std::min(item.LogTime, item.PublishTime)));
+    const Nanoseconds age(static_cast<std::int64_t>(
+        std::min(item.LogTime - std::min(item.LogTime, item.PublishTime), OldestPost)));
     const PostTime now = node.Clock->Now();
     const Nanoseconds at = _times.Of(item.Stream, now.Monotonic, age);
     posted->second.Message->PostMessage(

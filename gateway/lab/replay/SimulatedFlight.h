@@ -21,8 +21,8 @@ namespace Rabit::WhatIf
 
 struct FlightSettings
 {
-    SimulatedMedium Medium;
-    SimulatedFaults Faults;
+    SimulatedMedium Medium{};
+    SimulatedFaults Faults{};
     // Replaces the budgets of all nodes, in bytes a second; 0: as the channel allows.
     std::optional<double> Budget{};
     std::uint64_t Seed = 1;

@@ -1,12 +1,11 @@
 // lab_replay FILE...: flies recorded flights over a simulated radio, and writes what the nodes saw as JSON,
 // one object a line (SimulatedFlight.h).
 #include <rabit/RabitLog.h>
-#include <rabit/gateway/ConfigError.h>
 
 #include <CLI/CLI.hpp>
 
+#include <exception>
 #include <iostream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -62,7 +61,7 @@ int main(int argc, char **argv)
             { std::cout << fact.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) << '\n'; });
         flight.Run();
     }
-    catch (const std::runtime_error &error)
+    catch (const std::exception &error)
     {
         std::cerr << error.what() << '\n';
         return 2;
