@@ -81,11 +81,12 @@ std::vector<std::string> WordsOf(const char *command, const Options &options)
 }
 
 // Of `rabit lab replay`: the name, the word for its value, and the text.
-constexpr std::array<std::array<const char *, 3>, 9> RadioOptions = {{
+constexpr std::array<std::array<const char *, 3>, 10> RadioOptions = {{
     {"--radio", "RATE", "Of the channel, which all share, as 57.6kbit/s (default: unlimited)"},
     {"--loss", "SHARE", "Of the datagrams, at each receiver, as 10% (default: 0%)"},
+    {"--burst", "NUMBER", "Datagrams that are lost in a row, on average (default: 1)"},
     {"--delay", "TIME", "Of each datagram after the air, as 20ms (default: 0s)"},
-    {"--jitter", "TIME", "Longer at most, as 5ms (default: 0s)"},
+    {"--jitter", "TIME", "More or less at most, as 5ms (default: 0s)"},
     {"--queue", "SIZE", "That waits at each node's radio at most (default: 16kB)"},
     {"--overhead", "SIZE", "That each frame takes in addition (default: 0B)"},
     {"--budget", "RATE", "Of each node, as 1500B/s, or auto (default: as each node was configured)"},

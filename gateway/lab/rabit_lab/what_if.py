@@ -27,8 +27,9 @@ class Option:
 OPTIONS = [
     Option("radio", "RATE", "of the channel, which all share, as 57.6kbit/s; default: unlimited", units.bits_per_second, "unlimited"),
     Option("loss", "SHARE", "of the datagrams, at each receiver, as 10%%; default: 0%%", units.percent, "0%"),
+    Option("burst", "NUMBER", "datagrams that are lost in a row, on average; default: 1", units.number, "1"),
     Option("delay", "TIME", "of each datagram after the air; default: 0s", units.length, "0s"),
-    Option("jitter", "TIME", "longer at most; default: 0s", units.length, "0s"),
+    Option("jitter", "TIME", "more or less at most; default: 0s", units.length, "0s"),
     Option("queue", "SIZE", "that waits at each node's radio at most; default: 16kB", units.size, "16kB"),
     Option("overhead", "SIZE", "that each frame takes in addition; default: 0B", units.size, "0B"),
     Option("budget", "RATE", "of each node, as 1500B/s, or auto; default: those of the recorded configurations",
@@ -43,6 +44,7 @@ class Radio:
     """The radio of a flight, and what else was asked for."""
     radio: float
     loss: float
+    burst: float
     delay: float
     jitter: float
     queue: int
@@ -67,6 +69,7 @@ class Radio:
         """As people read it."""
         words = [f"{self.radio / 1000:g} kbit/s" if self.radio else "a radio without a limit"]
         words += [f"{self.loss:g} % loss"] if self.loss else []
+        words += [f"in bursts of {self.burst:g}"] if self.loss and self.burst > 1 else []
         words += [f"{1000 * self.delay:g} ms delay"] if self.delay else []
         words += [f"{1000 * self.jitter:g} ms jitter"] if self.jitter else []
         if self.budget is not None:
@@ -75,7 +78,7 @@ class Radio:
 
     def argv(self):
         words = {"rate": self.radio / 8, "queue": self.queue, "overhead": ETHERNET + self.overhead, "loss": self.loss,
-                 "delay": self.delay, "jitter": self.jitter, "budget": self.budget, "seed": int(self.seed)}
+                 "burst": self.burst, "delay": max(self.delay - self.jitter, 0), "jitter": 2 * self.jitter, "budget": self.budget, "seed": int(self.seed)}
         return [word for name, value in words.items() if value is not None for word in (f"--{name}", f"{value:.10g}")]
 
 
@@ -202,7 +205,7 @@ def row(flown, message, chosen, after):
                 worst = max(worst, (age or 0.0, f"{origin} at {observer}, at {at or 0:.1f} s"))
         due += out[origin]
         came = [at - sent for index, life in enumerate(simulated.lives) if life.node == observer
-                for at, sent in simulated.values.get((index, origin, message), []) if sent >= after]
+                for at, sent in simulated.values.get((index, origin, message), []) if sent >= after or not after]
         arrived += min(len(came), out[origin])  # a State comes again after an outage
         delays += came
     return Row(message, len(chosen), sum(posts.values()), sum(out.values()), due, arrived, quantile(delays, 0.9),

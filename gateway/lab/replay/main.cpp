@@ -37,6 +37,7 @@ int main(int argc, char **argv)
     app.add_option("--queue", settings.Medium.QueueBytes, "Bytes that wait at each node's radio at most");
     app.add_option("--overhead", settings.Medium.Overhead, "Bytes of each frame beyond its IP packet");
     app.add_option("--loss", percent, "Percent of the datagrams, at each receiver");
+    app.add_option("--burst", settings.Faults.Burst, "Datagrams that are lost in a row, on average");
     app.add_option("--delay", delay, "Seconds that a datagram takes after the air");
     app.add_option("--jitter", jitter, "Seconds that a datagram takes longer at most");
     CLI::Option *limit =

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Whole runs of the lab: each fault is seen to come and to go, and a scenario that must fail fails, with the reason.
+"""Whole runs of the lab: each fault is seen to come and to go, and a scenario that must fail fails, with the reason. One of the
+flights is flown again over the same radio in simulated time, and the ages are compared.
 
 Usage: lab_test.py RABIT UAV
 Exit code 77: this machine allows no namespaces or devices for them."""
@@ -114,10 +115,15 @@ REASONS = [
 ]
 
 
-SMALL = """run: 10s
+SMALL = """network:
+  radio: {rate: 125kbit/s, loss: 5%, delay: 20ms}
+run: 30s
 expect:
   - all up within 9s
 """
+# The same radio for `rabit lab replay`, after the nodes have met.
+SAME_RADIO = ["--radio", "125kbit/s", "--loss", "5%", "--delay", "20ms", "--after", "9s"]
+AS_EMULATED = 0.2  # largest difference of the ages, as a share
 # A user without root, on a machine where users may open this device, as Debian has it.
 AS_USER = ["unshare", "--mount", "sh", "-c", "mount -t tmpfs none /dev/net && mknod -m 666 /dev/net/tun c 10 200 && exec setpriv "
            "--reuid=65534 --regid=65534 --clear-groups \"$@\"", "sh"]
@@ -196,6 +202,25 @@ def check_radio(case):
     check(nodes["uav3"]["lost"] > nodes["uav2"]["lost"], case, "the link that loses more lost no more")
 
 
+def check_what_if(case, rabit):
+    """The recorded flight is younger or older in simulated time by no more than a fifth, and each time the same."""
+    folders = [case.folder / "replayed", case.folder / "again"]
+    for folder in folders:
+        done = subprocess.run([rabit, "lab", "replay", case.results / "flight.mcap", *SAME_RADIO, "--to", folder], text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LIMIT_S, check=False)
+        check(done.returncode == 0, case, f"replay ended with {done.returncode}: {done.stdout}")
+    for name in ("report.html", "what_if.json"):
+        check(folders[0].joinpath(name).read_bytes() == folders[1].joinpath(name).read_bytes(), case, f"two {name} of one seed differ")
+    found = {row["message"]: row for row in json.loads((folders[0] / "what_if.json").read_text(encoding="utf-8"))["messages"]}
+    for message in ("Pose", "Health", "MissionState", "Findings"):
+        if message in found:
+            flown, simulated = found[message]["recorded_p90"], found[message]["p90"]
+            print(f"{message}: age p90 {flown:.3f} s over the emulated radio, {simulated:.3f} s in simulated time")
+            check(abs(simulated - flown) <= AS_EMULATED * flown, case, f"the ages of {message} differ")
+    check("Pose" in found, case, f"the replay has no Pose: {sorted(found)}")
+    print(f"ok: {case.folder.name}: flown again in simulated time")
+
+
 def check_impossible(case):
     check(case.code == IMPOSSIBLE and "run it as root" in case.said and not case.results.exists(), case,
           f"ended with {case.code}, or without advice")
@@ -241,7 +266,7 @@ def main():
         lan = Case(folder, "lan", LAN, 4, rabit, uav)
         radio = Case(folder, "radio", RADIO, 5, rabit, uav)
         failing = Case(folder, "failing", FAILING, 2, rabit, uav)
-        user = Case(folder, "user", SMALL, 2, rabit, uav, AS_USER)
+        user = Case(folder, "user", SMALL, 3, rabit, uav, AS_USER)
         refused = Case(folder, "refused", SMALL, 2, rabit, uav, WITHOUT_RIGHTS)
         threads = [threading.Thread(target=case.run) for case in (lan, radio, failing, user, refused)]
         for thread in threads:
@@ -257,6 +282,7 @@ def main():
         check_radio(radio)
         check_failed(failing)
         check_passed(user)
+        check_what_if(user, rabit)
         check_impossible(refused)
         for name, number in (("terminated", signal.SIGTERM), ("killed", signal.SIGKILL)):
             interrupted(Case(folder, name, LAN, 4, rabit, uav), number)

@@ -137,6 +137,15 @@ TEST_F(SimulatedMediumTest, TheDelayOfADirectionComesOnTop)
     EXPECT_THAT(HeardThere, ElementsAre("uav1 100"));
 }
 
+TEST_F(SimulatedMediumTest, TheOverheadOfEachDatagramTakesTimeToo)
+{
+    Net.Network().SetMedium("*", {.BytesPerSecond = 10'000, .Overhead = 500});
+    Write(*FromUav1, 1000, 2);
+    Net.Pass(1s);
+    EXPECT_THAT(Heard, ElementsAre("uav1 150", "uav1 300"));
+    EXPECT_EQ(Net.Network().Air("*").CarriedBytes, 3000u);
+}
+
 TEST_F(SimulatedMediumTest, WhatDoesNotFitIntoTheQueueIsDropped)
 {
     Net.Network().SetMedium("*", {.BytesPerSecond = 10'000, .QueueBytes = 2500});

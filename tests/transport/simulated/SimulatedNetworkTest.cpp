@@ -16,8 +16,10 @@ namespace
 
 using namespace std::chrono_literals;
 using testing::ElementsAre;
+using testing::Ge;
 using testing::Gt;
 using testing::IsEmpty;
+using testing::Le;
 using testing::Lt;
 using Kind = PeerEvent::Kind;
 
@@ -127,6 +129,23 @@ TEST_F(SimulatedNetworkTest, BestEffortLosesWhatTheNetworkLoses)
     Net.Pass(1s);
     EXPECT_THAT(Got.Count(), testing::AllOf(Gt(600u), Lt(800u)));
     EXPECT_EQ(Ground->Counters().SamplesLost, Got.All().back().Sequence - Got.Count());
+}
+
+TEST_F(SimulatedNetworkTest, LossesComeInBurstsOfTheGivenLength)
+{
+    Connect(Telemetry());
+    SimulatedFaults bursts = Loss(0.2);
+    bursts.Burst = 5;
+    Net.Network().SetFaults("uav1", "ground", bursts);
+    Write(1, 5000);
+    Net.Pass(1s);
+    EXPECT_THAT(Got.Count(), testing::AllOf(Gt(3700u), Lt(4300u)));
+    std::size_t gaps = 0;
+    for (std::size_t i = 1; i < Got.All().size(); ++i)
+    {
+        gaps += Got.All()[i].Sequence != Got.All()[i - 1].Sequence + 1 ? 1 : 0;
+    }
+    EXPECT_THAT((5000 - Got.Count()) / gaps, testing::AllOf(Ge(4u), Le(6u)));
 }
 
 TEST_F(SimulatedNetworkTest, ReliableRepairsWhatTheNetworkLoses)

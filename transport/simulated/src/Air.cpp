@@ -75,9 +75,7 @@ void NetworkCore::OnPassage(Medium &medium)
                             ++flight->Lost[to], ++_traffic.Lost;
                             return;
                         }
-                        const SimulatedFaults &faults =
-                            _faults.Between(flight->FromNode, target->second->NodeNumber);
-                        if (faults.Cut || _random.Happens(faults.Loss))
+                        if (_faults.Loses(flight->FromNode, target->second->NodeNumber, _random))
                         {
                             ++flight->Lost[to], ++_traffic.Lost;
                         }

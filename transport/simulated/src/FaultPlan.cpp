@@ -36,7 +36,7 @@ std::optional<std::uint32_t> FaultPlan::Find(const std::string &node) const
     return found == _numbers.end() ? std::nullopt : std::optional(found->second);
 }
 
-const SimulatedFaults &FaultPlan::Between(std::uint32_t from, std::uint32_t to)
+FaultPlan::Flow &FaultPlan::FlowOf(std::uint32_t from, std::uint32_t to)
 {
     const auto [entry, isNew] = _found.try_emplace(std::uint64_t{from} << 32 | to);
     if (isNew)
@@ -46,10 +46,28 @@ const SimulatedFaults &FaultPlan::Between(std::uint32_t from, std::uint32_t to)
         const auto rule = std::find_if(_rules.rbegin(), _rules.rend(), fits);
         if (rule != _rules.rend())
         {
-            entry->second = rule->Faults;
+            entry->second.Faults = rule->Faults;
         }
     }
     return entry->second;
+}
+
+// In the long run the share `Loss` is lost. A loss near 1 makes the bursts longer, since a good link does not
+// last less than a datagram.
+bool FaultPlan::Loses(std::uint32_t from, std::uint32_t to, Random &random)
+{
+    Flow &flow = FlowOf(from, to);
+    const double loss = flow.Faults.Loss;
+    if (flow.Faults.Cut || loss <= 0 || loss >= 1 || flow.Faults.Burst <= 1)
+    {
+        return flow.Faults.Cut || random.Happens(loss);
+    }
+    const double burst = std::max(flow.Faults.Burst, loss / (1 - loss));
+    if (random.Happens(flow.IsInBurst ? 1 / burst : loss / ((1 - loss) * burst)))
+    {
+        flow.IsInBurst = !flow.IsInBurst;
+    }
+    return flow.IsInBurst;
 }
 
 }  // namespace Rabit::Simulated

@@ -8,6 +8,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "Random.h"
+
 namespace Rabit::Simulated
 {
 
@@ -21,9 +23,18 @@ public:
     std::uint32_t NumberOf(const std::string &node);
     // The number of a node's name; empty if none was assigned.
     std::optional<std::uint32_t> Find(const std::string &node) const;
-    const SimulatedFaults &Between(std::uint32_t from, std::uint32_t to);
+    const SimulatedFaults &Between(std::uint32_t from, std::uint32_t to) { return FlowOf(from, to).Faults; }
+    // True if the next datagram of that direction is lost, or cut off.
+    bool Loses(std::uint32_t from, std::uint32_t to, Random &random);
 
 private:
+    struct Flow
+    {
+        SimulatedFaults Faults;
+        bool IsInBurst = false;
+    };
+    Flow &FlowOf(std::uint32_t from, std::uint32_t to);
+
     struct Rule
     {
         std::string From;
@@ -33,8 +44,7 @@ private:
     std::vector<Rule> _rules;
     std::vector<std::string> _names;
     std::unordered_map<std::string, std::uint32_t> _numbers;
-    std::unordered_map<std::uint64_t, SimulatedFaults>
-        _found;  // by pair of numbers; emptied when rules change
+    std::unordered_map<std::uint64_t, Flow> _found;  // by pair of numbers; emptied when rules change
 };
 
 }  // namespace Rabit::Simulated

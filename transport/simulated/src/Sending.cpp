@@ -77,17 +77,17 @@ void NetworkCore::SendAlone(const ParticipantState &from, Letter letter)
         _traffic.Lost += packets;
         return;
     }
-    const SimulatedFaults &faults = _faults.Between(from.NodeNumber, target->second->NodeNumber);
     std::uint32_t lost = 0;
     for (std::uint32_t i = 0; i < packets; ++i)
     {
-        lost += faults.Cut || _random.Happens(faults.Loss) ? 1 : 0;
+        lost += _faults.Loses(from.NodeNumber, target->second->NodeNumber, _random) ? 1 : 0;
     }
     _traffic.Lost += lost;
     NoteFragments(from, letter.Content, lost);
     if (lost == 0)
     {
-        Transmit(faults, from.Id, letter.To, std::move(letter.Content), letter.Processing);
+        Transmit(_faults.Between(from.NodeNumber, target->second->NodeNumber), from.Id, letter.To,
+                 std::move(letter.Content), letter.Processing);
     }
 }
 

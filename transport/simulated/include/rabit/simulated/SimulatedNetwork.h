@@ -21,6 +21,8 @@ struct SimulatedFaults
     // Probability, 0 to 1, that a datagram is lost. A sample larger than TransportSettings::MaxDatagram
     // travels in several, and arrives when the last of them has.
     double Loss = 0.0;
+    // Losses come in bursts of so many datagrams on average (Gilbert's model); 1 or less: each by itself.
+    double Burst = 1.0;
     // Probability that a datagram arrives twice, each copy with its own delay.
     double Duplicate = 0.0;
     // A datagram takes Delay plus a uniformly drawn part of Jitter; a Jitter longer than the pause between
