@@ -18,7 +18,7 @@ p { margin: 4px 0; } .faint { color: #5f6b78; }
 section { background: #fff; border-radius: 4px; padding: 12px 18px; margin: 10px 0; overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; } th { text-align: left; color: #5f6b78; font-weight: 500; }
 td, th { padding: 4px 12px 4px 0; vertical-align: top; border-bottom: 1px solid #e6e9ed; }
-td.number { text-align: right; font-variant-numeric: tabular-nums; }
+.number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 .mark { font-weight: 700; white-space: nowrap; } .good .mark { color: #2f7d3b; } .bad .mark { color: #c22a22; }
 tr.bad td { background: #fdf1f0; }
 pre { margin: 0; font: 13px/1.45 ui-monospace, monospace; white-space: pre-wrap; }

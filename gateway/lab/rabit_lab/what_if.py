@@ -292,9 +292,12 @@ def medium_pictures(flown, radio):
 
 
 def html_table(heads, found):
-    shown = "".join("<tr>" + "".join(f'<td class="{"" if n == 0 else "number"}">{report.escape(cell)}</td>'
-                                     for n, cell in enumerate(line)) + "</tr>" for line in found)
-    return f"<table><tr>{''.join(f'<th>{head}</th>' for head in heads)}</tr>{shown}</table>"
+    words = {0, *(n for n, head in enumerate(heads) if head in ("where", "queue", "other outcomes"))}
+
+    def line(kind, line_cells):
+        return "<tr>" + "".join(f'<{kind} class="{"" if n in words else "number"}">{report.escape(cell)}</{kind}>'
+                                for n, cell in enumerate(line_cells)) + "</tr>"
+    return f"<table>{line('th', heads)}{''.join(line('td', one) for one in found)}</table>"
 
 
 def print_table(heads, found):
