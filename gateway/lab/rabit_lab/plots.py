@@ -207,6 +207,8 @@ def sends(flight):
 def channel(flight, name):
     """[SVG]: frames, and the share of the time in which the channel was used."""
     points = flight.radio.get(name, [])
+    if not points:
+        return []
     frames = {"offered": [], "on the air": [], "dropped by full queues": [], "lost on the way": []}
     used, longest = [], []
     for (begin, first), (end, last) in zip(points, points[1:]):
@@ -222,7 +224,7 @@ def channel(flight, name):
         used.append((middle, 100 * (last["busy_s"] - first["busy_s"]) / span))
         longest.append((end, max((node["wait_ms"] for node in last["nodes"].values()), default=0)))
     pictures = [lines(f"Frames on {name}", flight, "/s", frames)]
-    if points and points[-1][1]["bits_per_s"]:
+    if points[-1][1]["bits_per_s"]:
         pictures.append(lines(f"Use of {name}", flight, "%", {"share of the time": used}))
         pictures.append(lines(f"Waits in the queues of {name}", flight, "ms", {"longest": longest}))
     return pictures
