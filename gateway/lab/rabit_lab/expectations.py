@@ -56,6 +56,14 @@ def result(wrong, good):
     return (not wrong, "; ".join(wrong[:LISTED]) + more if wrong else good)
 
 
+def cause(flight, time, *nodes):
+    """What the lab did to these nodes before that time, if anything."""
+    if len(nodes) == 2 and flight.out_of_range(time - 2, time, *nodes):
+        return "; out of range"
+    fault = flight.last_fault(time, *nodes)
+    return f"; `{fault.text}` was at {fault.began:g} s" if fault else ""
+
+
 def unrecorded(flight, nodes):
     """The names among these that wrote no recording, so that nothing is known of what they saw."""
     return [node for node in nodes if not flight.scenario.nodes[node].plain and flight.lives_of(node)
@@ -125,7 +133,8 @@ class Reaches(Expectation):
                     now = flight.peers[index, node].at(self.after + self.within)
                     took = "" if first is None else f", and {self.state} after {first - self.after:.1f} s"
                     wrong.append(f"{observer.node} had {node} {now.state if now else 'unknown'} "
-                                 f"{self.within:g} s later{took}")
+                                 f"{self.within:g} s later{took}"
+                                 f"{cause(flight, self.after + self.within, node, observer.node)}")
                 else:
                     latest = max(latest, first - self.after)
         if not seen and not wrong:
@@ -172,9 +181,7 @@ class Measure(Expectation):
         age, at = flights.oldest(pieces)
         if age is None:
             return None, ""
-        fault = flight.last_fault(at, origin, observer)
-        why = f"; `{fault.text}` was at {fault.began:g} s" if fault else ""
-        return flights.age_below(pieces, self.share), f"oldest {age:.2f} s at {at:.1f} s{why}"
+        return flights.age_below(pieces, self.share), f"oldest {age:.2f} s at {at:.1f} s{cause(flight, at, origin, observer)}"
 
     def judge(self, flight):
         wrong, worst = [], None
@@ -237,7 +244,7 @@ class Says(Expectation):
                         if who == node and self.after <= time <= self.after + self.within
                         and self.words.lower() in text.lower()), default=None)
             if when is None:
-                wrong.append(f"{node} did not")
+                wrong.append(f"{node} did not{cause(flight, self.after + self.within, node)}")
             else:
                 latest = max(latest, when)
         return result(wrong, f"at {latest:.1f} s")

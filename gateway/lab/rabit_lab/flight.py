@@ -37,7 +37,9 @@ class Fault:
     text: str
 
     def concerns(self, *nodes):
-        return not self.nodes or any(node in self.nodes for node in nodes)
+        """True if it was done to one of them; a fault of links, if to the link between them."""
+        which = all if self.verb in ("loss", "delay", "deaf") else any
+        return not self.nodes or which(node in self.nodes for node in nodes)
 
 
 @dataclasses.dataclass

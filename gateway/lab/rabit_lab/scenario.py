@@ -90,13 +90,15 @@ class Event:
         """As people read it."""
         what = {"disk": "disk full", "clock": "clock"}.get(self.verb, self.verb)
         nodes = ", ".join(self.values.get("nodes", []))
+        origins, targets = self.values.get("from"), self.values.get("to")
+        direction = f" from {', '.join(origins)} to {', '.join(targets)}" if self.verb in ("loss", "delay") and origins != targets else ""
         more = {"clock": lambda v: f" {v['step']:+g} s", "send": lambda v: f" {v['type']} to {v['to']}",
                 "loss": lambda v: f" {v['loss']:g} %", "rate": lambda v: f" {v['rate'] / 1000:g} kbit/s",
                 "delay": lambda v: f" {1000 * v['delay']:g} ms",
                 "outage": lambda v: "", "deaf": lambda v: f" to {', '.join(v['of'])}"}.get(self.verb, lambda v: "")
         network = f" on {self.values['network']}" if self.values.get("network") else ""
         length = f" for {self.length:g} s" if self.length is not None else ""
-        return f"{what} {nodes}{more(self.values)}{network}{length}".replace("  ", " ").strip()
+        return f"{what} {nodes}{more(self.values)}{direction}{network}{length}".replace("  ", " ").strip()
 
 
 @dataclasses.dataclass

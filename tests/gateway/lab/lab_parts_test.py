@@ -177,6 +177,12 @@ class ExpectationTest(InFolder):
             lost(made)
             made.flight.faults.append(flights.Fault(1, 3, "cut", ["uav1"], "cut uav1"))
 
+        def loss(*nodes):
+            def make(made):
+                lost(made)
+                made.flight.faults.append(flights.Fault(8, 20, "loss", list(nodes), "loss 100 %"))
+            return make
+
         def killed(made):
             lost(made)
             made.flight.lives_of("uav1")[0].ended = 8.5
@@ -184,6 +190,8 @@ class ExpectationTest(InFolder):
         self.assertFalse(self.judge("no false lost", lost_before_the_end).good)
         self.assertFalse(self.judge("no false lost", cut_long_before).good)
         self.assertTrue(self.judge("no false lost", cut).good)
+        self.assertTrue(self.judge("no false lost", loss("uav1", "ground")).good)
+        self.assertFalse(self.judge("no false lost", loss("uav1", "uav2")).good)
         self.assertTrue(self.judge("no false lost", killed).good)
 
     def test_ages_grow_while_nothing_comes_and_name_the_fault(self):
@@ -214,6 +222,15 @@ class ExpectationTest(InFolder):
             made.flight.output.append((12.0, "ground", "Mission complete"))
         self.assertTrue(self.judge("ground says mission complete within 5s after 10s", said).good)
         self.assertFalse(self.judge("ground says mission complete within 1s after 10s", said).good)
+
+
+    def test_the_reason_names_the_fault_of_that_node(self):
+        def cut(made):
+            made.all_up(1)
+            made.sees("ground", "uav1", 9.0, "LOST")
+            made.flight.faults.append(flights.Fault(8, 20, "cut", ["uav1"], "cut uav1"))
+            made.flight.faults.append(flights.Fault(9, 20, "freeze", ["uav2"], "freeze uav2"))
+        self.assertIn("; `cut uav1` was at 8 s", self.judge("uav1 up within 1s after 12s at ground", cut).detail)
 
 
 class AgeTest(unittest.TestCase):

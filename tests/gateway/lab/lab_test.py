@@ -115,6 +115,48 @@ REASONS = [
 ]
 
 
+# Each fault is still there when the scenario expects that it is not.
+FAULTS = """  stopper: {command: [sh, -c, "UAV --config CONFIG --node stopper & sleep 9; kill -STOP $!; sleep 8; kill -CONT $!; wait"]}
+  watch: {command: [sh, -c, "began=$(date +%s); while :; do test $(date +%s) -ge $began && echo on time || echo back; sleep 0.5; done"], plain: true}
+  writer: {command: [sh, -c, "while :; do if head -c 9000 /dev/zero >> {disk}/file; then echo written; else echo no room; fi; sleep 0.5; done"], plain: true}
+  rude: {command: [sh, -c, "trap 'exit 3' TERM; while :; do sleep 0.2; done"], plain: true}
+network:
+  radio: {rate: 10Mbit/s, range: {from: track.csv, metres: 500}}
+run: 23s
+events:
+  - {at: 9s, cut: [uav1], for: 9s}
+  - {at: 9s, freeze: uav2, for: 9s}
+  - {at: 9s, loss: 100%, from: uav3, to: uav5, for: 9s}
+  - {at: 9s, clock: {node: watch, step: -10min}}
+  - {at: 9s, disk: {node: writer, full: true}, for: 9s}
+expect:
+  - uav1 up within 2s after 15s
+  - uav2 up within 2s after 15s
+  - uav3 up within 2s after 15s at uav5
+  - uav4 up within 2s after 19s
+  - watch says on time within 4s after 12s
+  - watch says back within 3s after 9s
+  - writer says written within 4s after 12s
+  - no false lost
+  - exit codes: 0
+"""
+FAULT_REASONS = [
+    ("uav1 up", "`cut uav1 for 9 s` was at 9 s"),
+    ("uav2 up", "`freeze uav2 for 9 s` was at 9 s"),
+    ("uav3 up", "`loss 100 % from uav3 to uav5 for 9 s` was at 9 s"),
+    ("uav4 up", "out of range"),
+    ("watch says on time", "`clock watch -600 s` was at 9 s"),
+    ("writer says written", "`disk full writer for 9 s` was at 9 s"),
+    ("no false lost", "which ran and could be heard"),
+    ("exit codes: 0", "rude ended with 3"),
+]
+NO_START = """  broken: {command: [sh, -c, "echo no such device; exit 2"], plain: true}
+run: 30s
+expect:
+  - all up within 9s
+"""
+NO_START_REASONS = [("no node ends by itself", "broken ended by itself with 2 at 0."), ("no node ends by itself", "no such device")]
+
 SMALL = """network:
   radio: {rate: 125kbit/s, loss: 5%, delay: 20ms}
 run: 30s
@@ -186,9 +228,9 @@ def check_lan(case):
     check(family[-1][0] == "lab" and "ended with" in family[-1][1], case, f"a killed node's child goes on: {family[-3:]}")
 
 
-def check_failed(case):
+def check_failed(case, reasons):
     check(case.code == 1, case, f"ended with {case.code}, not 1")
-    for name, reason in REASONS:
+    for name, reason in reasons:
         found = [text for verdict, text in case.verdicts().items() if verdict.startswith(name)]
         check(len(found) == 1 and found[0] and reason in found[0], case, f"`{name}` does not fail by `{reason}`: {found}")
     print(f"ok: {case.folder.name}: each fails for its reason")
@@ -266,9 +308,11 @@ def main():
         lan = Case(folder, "lan", LAN, 4, rabit, uav)
         radio = Case(folder, "radio", RADIO, 5, rabit, uav)
         failing = Case(folder, "failing", FAILING, 2, rabit, uav)
+        faults = Case(folder, "faults", FAULTS, 5, rabit, uav)
+        no_start = Case(folder, "no_start", NO_START, 2, rabit, uav)
         user = Case(folder, "user", SMALL, 3, rabit, uav, AS_USER)
         refused = Case(folder, "refused", SMALL, 2, rabit, uav, WITHOUT_RIGHTS)
-        threads = [threading.Thread(target=case.run) for case in (lan, radio, failing, user, refused)]
+        threads = [threading.Thread(target=case.run) for case in (lan, radio, failing, faults, no_start, user, refused)]
         for thread in threads:
             thread.start()
         for thread in threads:
@@ -280,7 +324,11 @@ def main():
             case.repeat_if_disturbed()
         check_lan(lan)
         check_radio(radio)
-        check_failed(failing)
+        check_failed(failing, REASONS)
+        check_failed(faults, FAULT_REASONS)
+        check("watch says back within 3s after 9s" in [name for name, reason in faults.verdicts().items() if reason is None], faults,
+              "no step of a clock")
+        check_failed(no_start, NO_START_REASONS)
         check_passed(user)
         check_what_if(user, rabit)
         check_impossible(refused)
