@@ -290,7 +290,7 @@ GatewayConfig Recording::ConfigOf(const RecordedLife &life)
     for (const auto &[queue, types] : used.QueueTypes)
     {
         if (std::none_of(config.Accept.begin(), config.Accept.end(),
-                         [&](const AcceptRule &known) { return known.Queue == queue; }))
+                         [&name = queue](const AcceptRule &known) { return known.Queue == name; }))
         {
             config.Accept.push_back({.Queue = queue, .Types = {types.begin(), types.end()}});
         }
