@@ -20,6 +20,10 @@ namespace
 {
 
 constexpr const char *FleetType = "Rabit::Gateway::Fleet";
+// How long a node that did not record is there before its first message, to meet the others, and after its
+// last.
+constexpr Time BeforeFirst = 6'000'000'000;
+constexpr Time AfterLast = 2'000'000'000;
 
 bool IsKnown(const std::string &type)
 {
@@ -116,6 +120,12 @@ Recording::Recording(const std::vector<std::string> &names) : _names(names)
     {
         throw std::runtime_error(names.front() + ": it is longer than a day, and is not flown");
     }
+    if (_lives.size() > MostLives)
+    {
+        throw std::runtime_error(names.front() + ": it has " + std::to_string(_lives.size()) +
+                                 " lives of nodes, and no more than " + std::to_string(MostLives) +
+                                 " are flown");
+    }
     for (RecordedLife &life : _lives)
     {
         life.Config = ConfigOf(life);
@@ -195,27 +205,19 @@ void Recording::FindLives()
                 const std::string node = Mcap::ValueOf(metadata.Values, "node");
                 isMerged = true;
                 AddLife({node, TimeIn(metadata.Values, "begin_ns"), TimeIn(metadata.Values, "end_ns"),
+                         Mcap::ValueOf(metadata.Values, "domain"),
                          texts[{node, Mcap::ValueOf(metadata.Values, "life")}]});
             }
         }
         if (!isMerged)
         {
-            AddLife({Mcap::ValueOf(Mcap::MetadataOf(*contents, "rabit.node"), "node"),
-                     contents->Statistics.StartTime, contents->Statistics.EndTime,
+            const Mcap::TextMap about = Mcap::MetadataOf(*contents, "rabit.node");
+            AddLife({Mcap::ValueOf(about, "node"), contents->Statistics.StartTime,
+                     contents->Statistics.EndTime, Mcap::ValueOf(about, "domain"),
                      texts[std::pair(std::string(), std::string())]});
         }
     }
-    for (const std::string &node : _plan.Nodes)
-    {
-        if (std::none_of(_lives.begin(), _lives.end(),
-                         [&node](const RecordedLife &life) { return life.Node == node; }))
-        {
-            _notes.push_back(node +
-                             " did not record itself: only those of its messages are flown that "
-                             "another node received");
-            AddLife({node, _messages->First(), _messages->Last()});
-        }
-    }
+    AddUnrecorded();
     std::stable_sort(_lives.begin(), _lives.end(),
                      [](const RecordedLife &one, const RecordedLife &other)
                      { return one.Begin < other.Begin; });
@@ -243,6 +245,43 @@ void Recording::AddLife(RecordedLife life)
     _lives.push_back(std::move(life));
 }
 
+void Recording::AddUnrecorded()
+{
+    std::map<std::string, std::pair<Time, Time>> spans;
+    for (const std::string &node : _plan.Nodes)
+    {
+        if (std::none_of(_lives.begin(), _lives.end(),
+                         [&node](const RecordedLife &life) { return life.Node == node; }))
+        {
+            spans[node] = {0, 0};
+        }
+    }
+    if (spans.empty())
+    {
+        return;
+    }
+    _messages->Begin(_messages->First());
+    while (const auto item = _messages->Next())
+    {
+        const auto span = spans.find(_plan.Streams[item->Stream].Node);
+        if (span != spans.end())
+        {
+            auto &[first, last] = span->second;
+            first = first == 0 ? item->LogTime : first;
+            last = item->LogTime;
+        }
+    }
+    for (const auto &[node, span] : spans)
+    {
+        _notes.push_back(node +
+                         " did not record itself: only those of its messages are flown that another "
+                         "node received");
+        AddLife({node, std::max(_messages->First() + BeforeFirst, span.first) - BeforeFirst,
+                 std::min(_messages->Last(), span.second + AfterLast),
+                 _plan.Domains.empty() ? "" : *_plan.Domains.begin()});
+    }
+}
+
 GatewayConfig Recording::ConfigOf(const RecordedLife &life)
 {
     GatewayConfig config;
@@ -263,6 +302,7 @@ GatewayConfig Recording::ConfigOf(const RecordedLife &life)
         }
     }
     config.Node = life.Node;
+    config.Domain = NumberIn<int>(life.Domain).value_or(config.Domain);
     FitToSimulation(config);
     for (const Replay::ReplayStream &stream : _plan.Streams)
     {

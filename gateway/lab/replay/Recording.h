@@ -26,6 +26,7 @@ struct RecordedLife
     std::string Node;
     Time Begin = 0;
     Time End = 0;
+    std::string Domain{};
     // The text of its configuration file; empty: it was made in code.
     std::string Configuration{};
     // For a simulated network: that of its file, without keys, recordings, foreign topics and rules for types
@@ -38,6 +39,7 @@ struct RecordedLife
 class Recording
 {
 public:
+    static constexpr std::size_t MostLives = 1000;
     // Longest recording that is flown.
     static constexpr Time Longest = Time{24} * 3600 * 1'000'000'000;
 
@@ -47,7 +49,8 @@ public:
 
     const Replay::ReplayPlan &Plan() const { return _plan; }
     Replay::RecordedMessages &Messages() { return *_messages; }
-    // By their beginnings. A node that only others recorded has one life, as long as the recording.
+    // By their beginnings. A node that only others recorded has one life, from shortly before its first
+    // message until shortly after its last.
     const std::vector<RecordedLife> &Lives() const { return _lives; }
     // When messages of another node arrived, and when they were posted, as the recorder knew it.
     struct Arrival
@@ -72,6 +75,7 @@ private:
     void RegisterTypes();
     void FindLives();
     void AddLife(RecordedLife life);
+    void AddUnrecorded();
     void FindUses(const Mcap::Contents &contents);
     GatewayConfig ConfigOf(const RecordedLife &life);
 

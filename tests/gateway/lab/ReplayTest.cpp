@@ -32,11 +32,13 @@ class FlightRecording
 public:
     FlightRecording() : _schema(_writer.AddSchema(TypeName, "omgidl", Idl)) {}
 
-    void AddLife(const std::string &node, int life, double begin, double end, const std::string &text = "")
+    void AddLife(const std::string &node, int life, double begin, double end, const std::string &text = "",
+                 const std::string &domain = "")
     {
         _writer.AddMetadata({"rabit.recording",
                              {{"node", node},
                               {"life", std::to_string(life)},
+                              {"domain", domain},
                               {"begin_ns", std::to_string(At(begin))},
                               {"end_ns", std::to_string(At(end))}}});
         if (!text.empty())
@@ -66,6 +68,14 @@ public:
                                                                    {"rabit.peer", peer},
                                                                    {"rabit.queue", queue},
                                                                    {"rabit.recorded_by", node}});
+    }
+    std::uint16_t AddReceived(const std::string &node, const std::string &peer, const std::string &queue)
+    {
+        return Add(node + "/Recorder/received/" + peer + "/" + queue, {{"rabit.kind", "queue received"},
+                                                                       {"rabit.node", node},
+                                                                       {"rabit.peer", peer},
+                                                                       {"rabit.queue", queue},
+                                                                       {"rabit.recorded_by", node}});
     }
     void Put(std::uint16_t channel, double time, std::size_t size)
     {
@@ -97,10 +107,11 @@ private:
 class Pair : public FlightRecording
 {
 public:
-    explicit Pair(double seconds, const std::string &ofUav = "", std::size_t size = 100)
+    explicit Pair(double seconds, const std::string &ofUav = "", std::size_t size = 100,
+                  const std::string &domain = "")
     {
-        AddLife("uav", 1, 0, seconds, ofUav);
-        AddLife("ground", 1, 0, seconds);
+        AddLife("uav", 1, 0, seconds, ofUav, domain);
+        AddLife("ground", 1, 0, seconds, "", domain);
         const std::uint16_t posted = AddPosted("uav", "Track");
         const std::uint16_t knew = AddKnew("ground", "uav", "Track");
         for (int tenth = 0; tenth <= 10 * seconds; ++tenth)
@@ -246,6 +257,20 @@ TEST_F(ReplayTest, QueueMessagesAreSentAgainAndTheirOutcomesAreTold)
     ASSERT_EQ(queues[0]["ages"].size(), 2U);
     EXPECT_NEAR(queues[0]["ages"][1].get<double>(), 5e7, 1e7);  // the first one opens the link
     EXPECT_EQ(queues[1]["refused"], 1);                         // uav has no such queue
+}
+
+TEST_F(ReplayTest, ANodeThatDidNotRecordSendsTheMessagesThatOthersReceived)
+{
+    Pair recording(20, "node: uav\ndomain: 7\naccept: [{queue: Orders, types: [\"Replayed::Value\"]}]\n", 100,
+                   "7");
+    recording.Put(recording.AddReceived("uav", "tool", "Orders"), 12, 20);
+    recording.Save(Path());
+    const std::vector<Json> facts = Fly();
+    const std::vector<Json> queues = Only(facts, "queue");
+    ASSERT_EQ(queues.size(), 1U);
+    EXPECT_EQ(queues[0]["from"], "tool");
+    EXPECT_EQ(queues[0]["outcomes"]["delivered"], 1);
+    EXPECT_EQ(Only(facts, "note").size(), 1U);
 }
 
 TEST_F(ReplayTest, AConfigurationThatIsNotAcceptedIsNotedAndTheFlightGoesOn)
