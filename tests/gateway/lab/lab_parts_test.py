@@ -2,6 +2,8 @@
 """The parts of the lab that decide: scenarios with mistakes, expectations on flights that are made up, loss by distance, and
 the files that a run leaves."""
 
+import contextlib
+import io
 import pathlib
 import sys
 import tempfile
@@ -11,7 +13,7 @@ from xml.etree import ElementTree
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "gateway" / "lab"))
 # pylint: disable=wrong-import-position
 from rabit_lab import flight as flights  # noqa: E402
-from rabit_lab import junit, main, new, places, plots, report, scenario, units  # noqa: E402
+from rabit_lab import junit, main, new, places, plots, report, scenario, units, what_if  # noqa: E402
 from rabit_lab.marked import ScenarioError  # noqa: E402
 
 FLEET = """nodes:
@@ -241,6 +243,53 @@ class AgeTest(unittest.TestCase):
 
     def test_times_without_the_observer_are_left_out(self):
         self.assertEqual(flights.without([(2, 3), (5, 20)], 0, 10), [(0, 2), (3, 5)])
+
+
+class WhatIfTest(InFolder):
+    """uav posts ten times a second from 1 s on; ground receives every second post, 0.1 s late."""
+
+    RADIO = what_if.Radio(57600, 0, 1, 0, 0, 16000, 0, None, 0, 1)
+
+    def flown(self, more=()):
+        posts = [1e9 + n * 1e8 for n in range(90)]
+        facts = [{"fact": "flight", "end": 10e9}]
+        facts += [{"fact": "life", "file": node, "node": node, "t": 0, "ended": None} for node in ("uav", "ground")]
+        facts += [{"fact": "publication", "file": "uav", "t": t, "message": "Pose", "offered": n, "replaced": n // 2}
+                  for t, n in ((2e9, 10), (10e9, 90))]
+        facts.append({"fact": "values", "file": "uav", "t": 10e9, "node": "uav", "message": "Pose", "at": posts, "posted": posts})
+        facts.append({"fact": "values", "file": "ground", "t": 10e9, "node": "uav", "message": "Pose",
+                      "at": [post + 1e8 for post in posts[::2]], "posted": posts[::2]})
+        facts.append({"fact": "flown", "at": "ground", "node": "uav", "message": "Pose", "arrived": posts, "posted": posts})
+        facts.append({"fact": "medium", "t": 10e9, "bytes": 36000, "carried": 90, "dropped": 10, "longest_wait": 1e9})
+        return what_if.read("flight.mcap", facts + list(more), self.RADIO)
+
+    def test_the_share_that_went_out_and_the_share_that_arrived_are_told_apart(self):
+        (row,), _ = what_if.rows(self.flown(), 0)
+        self.assertEqual((row.posted, row.went_out, row.due, row.arrived), (90, 45, 45, 45))
+        (late,), _ = what_if.rows(self.flown(), 5)
+        self.assertEqual((late.posted, late.went_out, late.arrived), (50, 25, 25))
+
+    def test_ages_begin_with_the_first_post_and_are_compared_to_those_of_the_recording(self):
+        (row,), _ = what_if.rows(self.flown(), 0)
+        self.assertAlmostEqual(row.delay_p90, 0.1)
+        self.assertAlmostEqual(row.p50, 0.2, 1)
+        self.assertAlmostEqual(row.recorded_p90, 0.09, 2)
+        self.assertLess(row.worst, 0.35)
+
+    def test_the_report_shows_messages_queues_and_limits(self):
+        queue = {"fact": "queue", "from": "<b>", "to": "uav", "queue": "Q", "sent": 2, "refused": 1, "ages": [2e8],
+                 "outcomes": {"delivered": 1, "expired": 1}}
+        with contextlib.redirect_stdout(io.StringIO()) as said:
+            what_if.show(self.flown([queue]), self.RADIO, self.folder)
+        self.assertIn("50.0 % used; queues dropped 10.0 % of the frames", said.getvalue())
+        self.assertIn("1 expired", said.getvalue())
+        text = (self.folder / "report.html").read_text(encoding="utf-8")
+        self.assertIn("uav/Q", text)
+        self.assertNotIn("<b>", text)
+
+    def test_an_option_without_its_unit_is_refused(self):
+        with self.assertRaisesRegex(ScenarioError, "--radio: `57600`"):
+            what_if.Radio.of(main.parse(["replay", "flight.mcap", "--radio", "57600"]))
 
 
 class PlacesTest(InFolder):
