@@ -3,9 +3,19 @@
 from __future__ import annotations
 
 import asyncio
+import concurrent.futures
 import contextlib
 from collections.abc import Callable, Iterator
 from typing import Any
+
+
+def in_thread(call: Callable[[], None]) -> asyncio.Future[None]:
+    """Runs the call on a thread of its own: the threads of the loop's executor may all wait for the node."""
+    executor = concurrent.futures.ThreadPoolExecutor(1, "rabit")
+    try:
+        return asyncio.get_running_loop().run_in_executor(executor, call)
+    finally:
+        executor.shutdown(wait=False)
 
 
 class _Waiters:

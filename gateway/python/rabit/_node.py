@@ -6,6 +6,7 @@ import asyncio
 import atexit
 import json
 import os
+import threading
 import weakref
 from collections.abc import Iterable, Mapping
 from types import TracebackType
@@ -54,10 +55,10 @@ class Node:
         text = json.dumps({key: value for key, value in given.items() if value != []}, default=_plain)
         self._core = _rabit.NodeCore(os.fspath(config), name, text, set(settings))
         self._queues: dict[str, Queue] = {}
-        self._subscriptions: weakref.WeakSet[Subscription] = weakref.WeakSet()
+        self._threads: list[threading.Thread] = []
         self._outcomes = _async.OutcomeLoop(self._core)
         for queue in self._core.accepts:
-            self._queues[queue] = Queue(self._core.add_queue(queue, queue_capacity))
+            self._queues[queue] = Queue(self._core.add_queue(queue, queue_capacity), self._threads)
         for library in libraries:
             self._core.add_library(os.fspath(library))
         for manager in managers:
@@ -77,8 +78,8 @@ class Node:
 
     def start(self) -> None:
         """Joins the network; a `with` block does it. Raises ConfigError."""
+        _running.add(self)  # first, so that a Ctrl-C in between leaves no node that nobody ends
         self._core.start()
-        _running.add(self)
 
     def stop(self) -> None:
         """Leaves the network. Messages without an outcome get one, and all iterations end.
@@ -88,8 +89,10 @@ class Node:
         if not self._core.stop():
             return
         _running.discard(self)
-        for stream in [*self._subscriptions, *self._queues.values()]:
-            stream._join()
+        handlers = list(self._threads)
+        if threading.current_thread() not in handlers:  # two handlers that wait for each other would never end
+            for thread in handlers:
+                thread.join()
 
     def __enter__(self) -> Node:
         self.start()
@@ -99,23 +102,24 @@ class Node:
         self.stop()
 
     async def __aenter__(self) -> Node:
-        await asyncio.get_running_loop().run_in_executor(None, self.start)
+        try:
+            await _async.in_thread(self.start)
+        except asyncio.CancelledError:
+            await asyncio.shield(_async.in_thread(self.stop))  # a start that has begun goes on
+            raise
         return self
 
     async def __aexit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        await asyncio.get_running_loop().run_in_executor(None, self._core.stop)
-        self.stop()
+        await asyncio.shield(_async.in_thread(self.stop))
 
     def subscribe(self, message: str, type: Any) -> Subscription:
         """Values of `Pose` of one node (`uav1/Pose`), of nodes that fit a pattern (`uav*/Pose`), or of this node
         (`Pose`), also of foreign topics. `type` is the class of the message."""
         pattern, slash, rest = message.partition("/")
         core = self._core.subscribe(pattern if slash else "", rest if slash else message, _type_of(type))
-        subscription = Subscription(core)
-        self._subscriptions.add(subscription)
-        return subscription
+        return Subscription(core, self._threads)
 
     def queue(self, name: str) -> Queue:
         """The queue of that name, which is among those that the node accepts."""

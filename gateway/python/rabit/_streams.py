@@ -27,10 +27,11 @@ class Outcome(enum.IntEnum):
 class _Stream:
     """One after the other: `for`, `async for`, `get`, or a handler on a thread of its own."""
 
-    def __init__(self, core: Any) -> None:
+    def __init__(self, core: Any, threads: list[threading.Thread]) -> None:
         self._core = core
         self._readable = _async.Readable(core)
-        self._thread: threading.Thread | None = None
+        self._threads = threads  # those of the handlers of a node
+        self._has_handler = False
 
     @property
     def name(self) -> str:
@@ -74,29 +75,29 @@ class _Stream:
     def on(self, handler: Callable[[Any], object]) -> Callable[[Any], object]:
         """Calls the handler with each one, on a thread of its own. An exception is logged with its traceback, and
         the next one is handled. Also as a decorator. To be used once."""
-        if self._thread is not None:
+        if self._has_handler:
             raise RuntimeError(f"{self.name} has a handler already")
-        self._thread = threading.Thread(target=self._run, args=(handler,), name=f"rabit {self.name}", daemon=True)
-        self._thread.start()
+        self._has_handler = True
+        thread = threading.Thread(target=self._run, args=(handler,), name=f"rabit {self.name}", daemon=True)
+        self._threads.append(thread)
+        thread.start()
         return handler
 
     def _run(self, handler: Callable[[Any], object]) -> None:
-        for item in self:
-            try:
-                handler(item)
-            except Exception:
-                kind, value, trace = sys.exc_info()
-                assert kind is not None and value is not None
-                _log.exception(f"handler of {self.name}", kind, value, trace)
+        try:
+            for item in self:
+                try:
+                    handler(item)
+                except Exception:
+                    kind, value, trace = sys.exc_info()
+                    assert kind is not None and value is not None
+                    _log.exception(f"handler of {self.name}", kind, value, trace)
+        finally:
+            self._threads.remove(threading.current_thread())
 
     def close(self) -> None:
         """Nothing comes any more."""
         self._core.close()
-
-    def _join(self) -> None:
-        thread, self._thread = self._thread, None
-        if thread is not None and thread is not threading.current_thread():
-            thread.join()
 
 
 class Subscription(_Stream):

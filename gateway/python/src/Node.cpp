@@ -1,5 +1,6 @@
 #include "Node.h"
 
+#include <rabit/RabitLog.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/idl/NearestWord.h>
@@ -33,7 +34,19 @@ Node::~Node()
         new std::shared_ptr<Parts>(_parts);  // never destroyed: its threads are in the other process
         return;
     }
-    Stop();
+    bool hasEnded = false;
+    try
+    {
+        hasEnded = Stop();
+    }
+    catch (py::error_already_set &error)  // Ctrl-C
+    {
+        error.discard_as_unraisable("the end of a node");
+    }
+    if (!hasEnded)
+    {
+        new std::shared_ptr<Parts>(_parts);  // never destroyed: a manager still runs
+    }
 }
 
 std::shared_ptr<Node::Parts> Node::Use()
@@ -46,9 +59,14 @@ std::shared_ptr<Node::Parts> Node::Use()
     }
     if (!_parts)
     {
-        throw std::runtime_error("the node `" + Name() + "` was stopped; a node runs once, make another one");
+        throw StoppedError();
     }
     return _parts;
+}
+
+std::runtime_error Node::StoppedError() const
+{
+    return std::runtime_error("the node `" + Name() + "` was stopped; a node runs once, make another one");
 }
 
 std::shared_ptr<Node::Parts> Node::UseNetwork()
@@ -75,7 +93,7 @@ PythonManager &Node::AddManager(const std::string &name, py::object object, doub
 {
     const auto held = Use();
     Parts &parts = *held;
-    if (_isRunning)
+    if (parts.HasStarted)
     {
         throw std::runtime_error("managers are added before the node starts");
     }
@@ -123,11 +141,16 @@ void Node::Start()
 {
     const auto held = Use();
     Parts &parts = *held;
-    if (_isRunning)
+    const py::gil_scoped_release released;
+    const std::lock_guard starting(parts.Changing);
+    if (parts.IsEnding)
+    {
+        throw StoppedError();
+    }
+    if (parts.HasStarted)
     {
         throw std::runtime_error("the node `" + Name() + "` runs already");
     }
-    const py::gil_scoped_release released;
     ValidateTransportName(_config, AvailableTransports(), KnownTransports());
     if (_config.Record)
     {
@@ -138,13 +161,36 @@ void Node::Start()
     _config.Tap = std::make_shared<ReasonTap>(_config.Tap);
     auto gateway =
         std::make_unique<GatewayManager>(_config, MakeTransport(_config.Transport), parts.Workspace);
-    parts.Explorer = &gateway->Explorer();
-    parts.Explorer->SetOnChange([&parts] { AttachAll(parts); });
+    FleetExplorer &explorer = gateway->Explorer();
+    explorer.SetOnChange([&parts] { AttachAll(parts); });
     parts.Reactor->AddManager(std::move(gateway));
     parts.Workspace.AddPublishSubscribeMessage(FleetMessageNameOf(_config), parts.Fleet);
     parts.Reactor->SetHandleSignals(false);
-    parts.Runner = std::thread([&parts] { parts.Reactor->Run(); });
-    _isRunning = true;
+    {
+        // Before the managers run, since one may stop the node at once.
+        const py::gil_scoped_acquire gil;
+        parts.Explorer = &explorer;
+        parts.HasStarted = true;
+    }
+    parts.Runner = std::thread([&parts, name = Name()] { RunReactor(parts, name); });
+}
+
+void Node::RunReactor(Parts &parts, const std::string &name)
+{
+    try
+    {
+        parts.Reactor->Run();
+    }
+    catch (const std::exception &error)
+    {
+        RabitLog::Write(RabitLogLevel::Error,
+                        "the node `" + name + "` cannot run: " + error.what() + "; make another one");
+    }
+    // The managers may have ended by themselves.
+    parts.IsEnding = true;
+    CloseStreams(parts);
+    parts.HasEnded = true;
+    parts.Ended.Notify();
 }
 
 void Node::CloseStreams(Parts &parts)
@@ -173,21 +219,31 @@ bool Node::Stop()
         return true;
     }
     const auto parts = _parts;
-    _isRunning = false;
+    parts->IsEnding = true;
     CloseStreams(*parts);
-    // Managers may wait for the GIL, and use the node until they have ended.
-    const py::gil_scoped_release released;
     if (PythonManager::IsCalledIn(parts->Workspace))
     {
+        const py::gil_scoped_release released;
         parts->Reactor->ShutdownAllManagers();
         return false;
     }
-    const std::lock_guard ending(parts->Ending);
+    {
+        const py::gil_scoped_release released;
+        const std::lock_guard starting(parts->Changing);
+        if (!parts->Reactor)
+        {
+            return true;  // another thread has just ended it
+        }
+        parts->Reactor->ShutdownAllManagers();
+    }
+    // Managers may wait for the GIL, and use the node until they have ended.
+    parts->Ended.Wait(std::nullopt, [&parts] { return parts->HasEnded || !parts->Runner.joinable(); });
+    const py::gil_scoped_release released;
+    const std::lock_guard ending(parts->Changing);
     if (!parts->Reactor)
     {
-        return true;  // another thread has just ended it
+        return true;
     }
-    parts->Reactor->ShutdownAllManagers();
     if (parts->Runner.joinable())
     {
         parts->Runner.join();
@@ -275,7 +331,7 @@ std::shared_ptr<Subscription> Node::Subscribe(const std::string &pattern, const 
         parts->Subscriptions.push_back(subscription);
     }
     AttachAll(*parts);
-    if (!_isRunning)
+    if (parts->IsEnding)
     {
         CloseStreams(*parts);  // a manager subscribes while the node ends
     }

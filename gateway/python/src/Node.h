@@ -15,6 +15,7 @@
 #include <mutex>
 #include <optional>
 #include <shared_mutex>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -39,8 +40,8 @@ void *LoadLibrary(const std::string &path);
 // A reactor with a gateway, in a workspace of its own, on threads of its own that never wait for the GIL;
 // only managers written in Python do. So a program that computes does not silence its node.
 //
-// Start and Stop once each. All functions need the GIL, and release it where they wait. In a forked process
-// the threads of the node do not exist: there every function throws, and nothing is torn down.
+// A node starts and stops once. All functions need the GIL, and release it where they wait. In a forked
+// process the threads of the node do not exist: there every function throws, and nothing is torn down.
 class Node
 {
 public:
@@ -51,7 +52,7 @@ public:
 
     const GatewayConfig &Config() const { return _config; }
     std::string Name() const { return _config.Node; }
-    bool IsRunning() const { return _isRunning; }
+    bool IsRunning() const { return _parts && _parts->HasStarted && !_parts->IsEnding; }
 
     // Before Start. The name of a Python manager's own queue is its name.
     std::shared_ptr<InboundQueue> AddQueue(const std::string &name, int capacity);
@@ -64,7 +65,8 @@ public:
     void Start();
     // Leaves the network. Messages without an outcome get one. False in a manager of this node, which cannot
     // wait for its own end: then the streams and the managers are told to end, and the next Stop, in another
-    // thread, ends the node.
+    // thread, ends the node. Ctrl-C ends the wait for a manager with KeyboardInterrupt; the next Stop goes
+    // on.
     bool Stop();
 
     std::shared_ptr<Subscription> Subscribe(const std::string &pattern, const std::string &message,
@@ -89,9 +91,13 @@ private:
         std::shared_ptr<Gateway::Fleet> Fleet = std::make_shared<Gateway::Fleet>();
         FleetExplorer *Explorer = nullptr;
         std::shared_mutex InUse;              // by calls that use the explorer without the GIL
-        std::mutex Ending;                    // held while a Stop ends the node, without the GIL
+        std::mutex Changing;                  // held by Start, and by Stop, without the GIL
         RecorderManager *Recorder = nullptr;  // null: nothing is recorded
         std::thread Runner;
+        std::atomic<bool> HasStarted{false};
+        std::atomic<bool> IsEnding{false};  // never false again, also if Start is not done yet
+        std::atomic<bool> HasEnded{false};  // the runner is done
+        Waitable Ended;
         std::mutex Mutex;
         std::vector<std::weak_ptr<Subscription>> Subscriptions;  // guarded
         std::vector<std::shared_ptr<InboundQueue>> Queues;
@@ -101,16 +107,17 @@ private:
     // Holding what they return keeps the parts alive while the GIL is released.
     std::shared_ptr<Parts> Use();
     std::shared_ptr<Parts> UseNetwork();
+    std::runtime_error StoppedError() const;
     // All messages of a link live equally long: throws py::value_error for another time than before.
     void SetExpiry(const std::string &address, double seconds);
     static void AttachAll(Parts &parts);
     static void CloseStreams(Parts &parts);
+    static void RunReactor(Parts &parts, const std::string &name);
     bool IsForeign(const std::string &name) const;
 
     GatewayConfig _config;
     const pid_t _process;
     std::shared_ptr<Parts> _parts;  // until the managers have ended
-    std::atomic<bool> _isRunning{false};
     std::atomic<std::uint64_t> _nextReceipt{1};
     const std::shared_ptr<Outcomes> _outcomes = std::make_shared<Outcomes>();
 };

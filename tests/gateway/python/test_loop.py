@@ -111,6 +111,33 @@ def test_an_event_loop_keeps_no_stream_that_was_dropped(idl, one_network):
     asyncio.run(main())
 
 
+def test_a_node_ends_while_all_threads_of_the_loop_wait_for_it(idl, one_network):
+    async def main():
+        async with rabit.Node("planner", **one_network) as node:
+            loop = asyncio.get_running_loop()
+            poses = node.subscribe("Pose", idl.Uav.Pose)
+            waits = [loop.run_in_executor(None, poses.get) for _ in range(64)]
+        ended = await asyncio.wait_for(asyncio.gather(*waits, return_exceptions=True), 30)
+        assert all(isinstance(error, RuntimeError) for error in ended)
+
+    asyncio.run(main())
+
+
+def test_a_node_whose_start_is_cancelled_does_not_run(one_network):
+    async def main():
+        node = rabit.Node("planner", **one_network)
+        starting = asyncio.create_task(node.__aenter__())
+        await asyncio.sleep(0)
+        starting.cancel()
+        with pytest.raises(asyncio.CancelledError):
+            await starting
+        assert not node.is_running
+        with pytest.raises(RuntimeError, match="was stopped"):
+            node.start()
+
+    asyncio.run(main())
+
+
 def test_a_node_that_stops_ends_the_waits_of_an_event_loop(idl, one_network):
     async def main():
         node = rabit.Node("planner", accept={"Commands": [idl.Uav.Goto]}, **one_network)

@@ -70,6 +70,75 @@ def test_a_manager_that_stops_its_node_ends_the_iterations(one_network):
     assert out == "shutdown\nended\n"
 
 
+def test_a_manager_may_stop_its_node_before_start_returns(one_network):
+    """The thread that starts the node gets no processor until the manager has stopped it."""
+    out = end_of(one_network, """
+        class Once(rabit.Manager):
+            def unit_of_work(self):
+                self.node.stop()
+                os.kill(other, signal.SIGKILL)
+
+        node = rabit.Node("planner", managers=[Once()], **network)
+        os.sched_setaffinity(0, [min(os.sched_getaffinity(0))])
+        other = os.fork()
+        while other == 0:
+            pass
+        os.sched_setscheduler(0, os.SCHED_IDLE | os.SCHED_RESET_ON_FORK, os.sched_param(0))
+        with node:
+            os.waitpid(other, 0)
+            assert not node.is_running
+            for pose in node.subscribe("uav*/Pose", idl.Uav.Pose):
+                pass
+        print("ended")
+        """)
+    assert out == "ended\n"
+
+
+def test_handlers_that_stop_their_node_do_not_wait_for_each_other(one_network):
+    out = end_of(one_network, """
+        both = threading.Barrier(2)
+
+        def handle(value):
+            both.wait()
+            node.stop()
+
+        with rabit.Node("planner", **network) as node:
+            threads = set(threading.enumerate())
+            for name in ("Pose", "Order"):
+                node.subscribe(name, idl.Uav.Pose).on(handle)
+            handlers = set(threading.enumerate()) - threads
+            for name in ("Pose", "Order"):
+                node.post(name, idl.Uav.Pose())
+            for thread in handlers:
+                thread.join()
+        print("ended")
+        """)
+    assert out == "ended\n"
+
+
+def test_ctrl_c_ends_the_wait_for_a_manager_that_does_not_end(one_network):
+    out = end_of(one_network, """
+        class Endless(rabit.Manager):
+            def unit_of_work(self):
+                works.set()
+                goes_on.wait()
+
+        works, goes_on = threading.Event(), threading.Event()
+        node = rabit.Node("planner", managers=[Endless()], **network)
+        node.start()
+        works.wait()
+        threading.Timer(0.5, os.kill, [os.getpid(), signal.SIGINT]).start()
+        try:
+            node.stop()
+        except KeyboardInterrupt:
+            print("interrupted")
+        goes_on.set()
+        node.stop()
+        print("ended")
+        """)
+    assert out == "interrupted\nended\n"
+
+
 class Talker(rabit.Manager):
     """Uses its node until it has ended."""
 
