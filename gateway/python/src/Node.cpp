@@ -1,6 +1,7 @@
 #include "Node.h"
 
 #include <rabit/RabitLog.h>
+#include <rabit/backfill/BackfillManager.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/idl/NearestWord.h>
@@ -158,9 +159,14 @@ void Node::Start()
         parts.Recorder = recorder.get();
         parts.Reactor->AddManager(std::move(recorder));
     }
+    if (BackfillManager::IsUsed(_config))
+    {
+        parts.Reactor->AddManager(
+            std::make_unique<BackfillManager>(_config, parts.Recorder, parts.Workspace));
+    }
     _config.Tap = std::make_shared<ReasonTap>(_config.Tap);
     auto gateway =
-        std::make_unique<GatewayManager>(_config, MakeTransport(_config.Transport), parts.Workspace);
+        std::make_unique<GatewayManager>(_config, TransportsOf(_config, MakeTransport), parts.Workspace);
     FleetExplorer &explorer = gateway->Explorer();
     explorer.SetOnChange([&parts] { AttachAll(parts); });
     parts.Reactor->AddManager(std::move(gateway));

@@ -4,7 +4,9 @@
 
 #include <pybind11/stl.h>
 
+#include <cstdlib>
 #include <set>
+#include <sstream>
 
 #include "Module.h"
 #include "Node.h"
@@ -17,8 +19,8 @@ namespace
 
 // The settings of a file, or of a text in its form, or of both: the text's entries follow those of the file,
 // and settings that the text has (`given`) replace those of the file.
-GatewayConfig ConfigOf(const std::string &file, const std::string &node, const std::string &text,
-                       const std::set<std::string> &given)
+GatewayConfig ReadConfig(const std::string &file, const std::string &node, const std::string &text,
+                         const std::set<std::string> &given)
 {
     if (file.empty())
     {
@@ -32,6 +34,7 @@ GatewayConfig ConfigOf(const std::string &file, const std::string &node, const s
     append(config.Accept, added.Accept);
     append(config.Send, added.Send);
     append(config.Foreign, added.Foreign);
+    append(config.Panels, added.Panels);
     append(config.ProblemsOf, added.ProblemsOf);
     const auto replace = [&](const char *key, auto GatewayConfig::*member)
     {
@@ -51,10 +54,41 @@ GatewayConfig ConfigOf(const std::string &file, const std::string &node, const s
     replace("backend_config", &GatewayConfig::BackendConfig);
     replace("security", &GatewayConfig::Security);
     replace("radio", &GatewayConfig::Radio);
+    replace("paths", &GatewayConfig::Paths);
     replace("state_dir", &GatewayConfig::StateDir);
+    replace("parameters", &GatewayConfig::Parameters);
     replace("record", &GatewayConfig::Record);
+    replace("fetch", &GatewayConfig::Fetch);
     replace("reports", &GatewayConfig::Reports);
     ValidateGatewayConfig(config);
+    return config;
+}
+
+// With the interfaces and the folder of recordings of the environment, as a node in C++ has them
+// (NodeOptions): the lab runs each node in a network of its own.
+GatewayConfig ConfigOf(const std::string &file, const std::string &node, const std::string &text,
+                       const std::set<std::string> &given)
+{
+    GatewayConfig config = ReadConfig(file, node, text, given);
+    if (const char *interfaces = std::getenv("RABIT_NODE_INTERFACE");
+        interfaces != nullptr && *interfaces != 0)
+    {
+        std::vector<std::string> names;
+        std::istringstream list(interfaces);
+        for (std::string name; std::getline(list, name, ',');)
+        {
+            names.push_back(name);
+        }
+        UseInterfaces(names, config);
+    }
+    if (const char *folder = std::getenv("RABIT_NODE_RECORD"); folder != nullptr && *folder != 0)
+    {
+        if (!config.Record)
+        {
+            config.Record.emplace();
+        }
+        config.Record->Folder = folder;
+    }
     return config;
 }
 

@@ -42,3 +42,16 @@ def test_the_same_with_an_event_loop(idl, network):
                 break
 
     asyncio.run(asyncio.wait_for(program(), 60))
+
+
+def test_a_node_of_several_paths_is_reached_by_one_that_works(idl, one_network, tmp_path):
+    """The second path of the ground has nobody on it. A file is there, too: what the program gives counts more."""
+    domain = {"domain": one_network["domain"], "transport": one_network["transport"]}
+    file = tmp_path / "ground.yaml"
+    file.write_text("node: ground\npaths: [{name: none, interfaces: [none0]}]\n")
+    paths = [{"name": "mesh", "interfaces": ["127.0.0.1"]}, {"name": "modem", "interfaces": ["none1"]}]
+    uav = rabit.Node("uav1", publish={"Pose": idl.Uav.Pose}, **one_network)
+    with uav, rabit.Node(config=file, paths=paths, **domain) as ground:
+        poses = ground.subscribe("uav1/Pose", idl.Uav.Pose)
+        uav.post("Pose", idl.Uav.Pose(altitude_m=80))
+        assert poses.get(timeout=30).value.altitude_m == 80
