@@ -56,6 +56,7 @@ class Node:
         self._core = _rabit.NodeCore(os.fspath(config), name, text, set(settings))
         self._queues: dict[str, Queue] = {}
         self._threads: list[threading.Thread] = []
+        self._managers: list[Manager] = []
         self._outcomes = _async.OutcomeLoop(self._core)
         for queue in self._core.accepts:
             self._queues[queue] = Queue(self._core.add_queue(queue, queue_capacity), self._threads)
@@ -74,6 +75,7 @@ class Node:
 
     def add_manager(self, manager: Manager) -> None:
         """Before the node starts."""
+        self._managers.append(manager)  # the core holds it from the start on
         manager._join(self, self._core)
 
     def start(self) -> None:

@@ -90,7 +90,7 @@ std::shared_ptr<InboundQueue> Node::AddQueue(const std::string &name, int capaci
     return queue;
 }
 
-PythonManager &Node::AddManager(const std::string &name, py::object object, double period)
+PythonManager &Node::AddManager(const std::string &name, const py::object &object, double period)
 {
     const auto held = Use();
     Parts &parts = *held;
@@ -98,9 +98,10 @@ PythonManager &Node::AddManager(const std::string &name, py::object object, doub
     {
         throw std::runtime_error("managers are added before the node starts");
     }
-    auto manager = std::make_unique<PythonManager>(name, parts.Workspace, std::move(object), period);
+    auto manager = std::make_unique<PythonManager>(name, parts.Workspace, object, period);
     PythonManager &added = *manager;
     parts.Reactor->AddManager(std::move(manager));
+    parts.Managers.push_back(&added);
     return added;
 }
 
@@ -175,6 +176,10 @@ void Node::Start()
     {
         // Before the managers run, since one may stop the node at once.
         const py::gil_scoped_acquire gil;
+        for (PythonManager *manager : parts.Managers)
+        {
+            manager->Hold();
+        }
         parts.Explorer = &explorer;
         parts.HasStarted = true;
     }

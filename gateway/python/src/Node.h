@@ -56,7 +56,7 @@ public:
 
     // Before Start. The name of a Python manager's own queue is its name.
     std::shared_ptr<InboundQueue> AddQueue(const std::string &name, int capacity);
-    PythonManager &AddManager(const std::string &name, py::object object, double period);
+    PythonManager &AddManager(const std::string &name, const py::object &object, double period);
     // Adds the managers of a library: calls its function
     // extern "C" void rabit_add_managers(RabitReactor &, GatewayConfig &, RabitWorkspace &).
     void AddLibrary(const std::string &path);
@@ -89,6 +89,7 @@ private:
         std::unique_ptr<RabitReactor> Reactor = std::make_unique<RabitReactor>(Workspace);
         std::map<std::string, std::pair<std::shared_ptr<MessageClass>, std::shared_ptr<RabitMessage>>> Posted;
         std::shared_ptr<Gateway::Fleet> Fleet = std::make_shared<Gateway::Fleet>();
+        std::vector<PythonManager *> Managers;  // the reactor's
         FleetExplorer *Explorer = nullptr;
         std::shared_mutex InUse;              // by calls that use the explorer without the GIL
         std::mutex Changing;                  // held by Start, and by Stop, without the GIL

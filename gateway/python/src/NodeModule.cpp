@@ -214,9 +214,9 @@ void DefineNode(py::module_ &module)
                                })
         .def("add_queue", &Node::AddQueue)
         .def("add_manager",
-             [](Node &self, const std::string &name, py::object object, double period)
+             [](Node &self, const std::string &name, const py::object &object, double period)
              {
-                 PythonManager &manager = self.AddManager(name, std::move(object), period);
+                 PythonManager &manager = self.AddManager(name, object, period);
                  return ManagerCore{manager.Self(), manager.WakeUpHandler()};
              })
         .def("add_library", &Node::AddLibrary)

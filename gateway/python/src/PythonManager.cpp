@@ -15,8 +15,9 @@ thread_local const RabitWorkspace *calledIn = nullptr;
 
 }  // namespace
 
-PythonManager::PythonManager(std::string name, RabitWorkspace &workspace, py::object object, double period)
-    : RabitManager(std::move(name), workspace), _object(std::move(object))
+PythonManager::PythonManager(std::string name, RabitWorkspace &workspace, const py::object &object,
+                             double period)
+    : RabitManager(std::move(name), workspace), _object(py::weakref(object))
 {
     if (period > 0)
     {

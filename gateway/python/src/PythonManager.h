@@ -16,9 +16,13 @@ namespace Rabit::Python
 class PythonManager final : public RabitManager
 {
 public:
-    // With the GIL. `period`: seconds; 0: none.
-    PythonManager(std::string name, RabitWorkspace &workspace, pybind11::object object, double period);
+    // With the GIL. `period`: seconds; 0: none. Refers to the object weakly until Hold: the object knows its
+    // node, and Python finds no cycle that leads through C++.
+    PythonManager(std::string name, RabitWorkspace &workspace, const pybind11::object &object, double period);
     ~PythonManager() override;
+
+    // With the GIL. To be called before the manager runs.
+    void Hold() { _object = _object(); }
 
     // Whether this thread is within a call of a manager of that workspace.
     static bool IsCalledIn(const RabitWorkspace &workspace);
@@ -33,7 +37,7 @@ public:
 private:
     void Call(const char *function);
 
-    pybind11::object _object;
+    pybind11::object _object;  // a weak reference until Hold
     const std::shared_ptr<PythonManager *> _self = std::make_shared<PythonManager *>(this);
 };
 
