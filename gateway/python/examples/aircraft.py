@@ -3,6 +3,7 @@
     aircraft.py uav.idl 7 [NAME] [FOLDER]     it records itself into the folder
 """
 
+import signal
 import sys
 from typing import Any
 
@@ -48,6 +49,8 @@ node = rabit.Node(
     managers=[Pilot()],
     **settings,
 )
+for number in (signal.SIGINT, signal.SIGTERM):
+    signal.signal(number, lambda *_: node.stop())  # the iteration ends
 with node:
     for area in node.subscribe("ground/SearchArea", idl.Uav.SearchArea):
         print(area.value, flush=True)

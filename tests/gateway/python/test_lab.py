@@ -13,10 +13,11 @@ from conftest import ROOT
 UAV = pathlib.Path(os.environ.get("RABIT_BIN", "/nowhere")) / "uav"
 
 PLANNER = """
-import time, rabit
+import signal, time, rabit
 idl = rabit.load_idl({idl!r})
 with rabit.Node("planner", domain=7, publish={{"Plan": idl.Uav.Pose}}) as node:
-    while True:
+    signal.signal(signal.SIGTERM, lambda *_: node.stop())
+    while node.is_running:
         node.post("Plan", idl.Uav.Pose())
         time.sleep(0.1)
 """
@@ -45,7 +46,7 @@ def test_a_scenario_is_flown_and_its_recording_is_read(tmp_path):
             flight = lab.fly({{
                 "nodes": {{"uav1": uav, "planner": planner}},
                 "run": "9s",
-                "expect": ["all up within 8s"],
+                "expect": ["all up within 8s", {{"exit codes": 0}}],
             }})
             assert flight.passed and flight.verdict("all up").met
             assert "planner" in flight.log and flight.report.exists()

@@ -221,6 +221,26 @@ def test_ctrl_c_ends_a_program_that_waits(one_network, text):
         assert child.returncode == -signal.SIGINT and errors.strip().endswith("KeyboardInterrupt")
 
 
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_may_stop_the_node(one_network, number):
+    text = """
+        node = rabit.Node("planner", **network)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, lambda *_: node.stop())
+        with node:
+            poses = node.subscribe("uav*/Pose", idl.Uav.Pose)
+            print("ready", flush=True)
+            for pose in poses:
+                pass
+        print("ended")
+        """
+    with run(program(one_network, text)) as child:
+        assert child.stdout.readline() == "ready\n"
+        child.send_signal(number)
+        out, errors = child.communicate(timeout=60)
+        assert (child.returncode, out, errors) == (0, "ended\n", "")
+
+
 @pytest.mark.parametrize(
     "text",
     [
