@@ -79,7 +79,13 @@ class Node:
         manager._join(self, self._core)
 
     def start(self) -> None:
-        """Joins the network; a `with` block does it. Raises ConfigError."""
+        """Joins the network; a `with` block does it. Raises ConfigError, and RuntimeError in a process that was forked
+        while nodes ran."""
+        if _has_locks_of_others:
+            raise RuntimeError(
+                f"the node `{self.name}` cannot start: this process was forked while nodes ran; make it with `subprocess`, "
+                "or `multiprocessing.get_context('spawn')`, or before the first node starts"
+            )
         _running.add(self)  # first, so that a Ctrl-C in between leaves no node that nobody ends
         self._core.start()
 
@@ -191,4 +197,14 @@ def _stop_all() -> None:
         node.stop()
 
 
-os.register_at_fork(after_in_child=_running.clear)
+_has_locks_of_others = False
+
+
+def _after_fork() -> None:
+    """In a forked process, locks that threads of nodes held at that moment stay locked, also those within DDS."""
+    global _has_locks_of_others
+    _has_locks_of_others = _has_locks_of_others or len(_running) > 0
+    _running.clear()
+
+
+os.register_at_fork(after_in_child=_after_fork)

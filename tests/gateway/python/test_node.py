@@ -264,7 +264,7 @@ def test_the_interpreter_ends_with_nodes_that_run(one_network, text):
         assert "Traceback" not in errors
 
 
-def test_a_forked_process_leaves_the_node_alone_and_may_have_its_own(one_network):
+def test_a_forked_process_leaves_the_node_alone_and_starts_none(one_network):
     text = """
         node = rabit.Node("planner", **network)
         node.start()
@@ -275,9 +275,11 @@ def test_a_forked_process_leaves_the_node_alone_and_may_have_its_own(one_network
             except RuntimeError as error:
                 assert "forked process" in str(error)
             node.stop()
-            with rabit.Node("other", **network) as own:
-                own.post("Pose", idl.Uav.Pose())
-            print("child", flush=True)
+            try:
+                rabit.Node("other", **network).start()
+            except RuntimeError as error:
+                assert "was forked while nodes ran" in str(error)
+                print("child", flush=True)
             sys.exit(0)
         assert os.waitpid(child, 0)[1] == 0
         assert node.is_running and node.flush(5)
@@ -287,6 +289,23 @@ def test_a_forked_process_leaves_the_node_alone_and_may_have_its_own(one_network
     with run(program(one_network, text)) as child:
         out, errors = child.communicate(timeout=60)
         assert (child.returncode, out) == (0, "child\nparent\n"), errors
+
+
+def test_a_process_that_was_forked_without_nodes_may_have_its_own(one_network):
+    text = """
+        with rabit.Node("planner", **network) as node:
+            pass
+        child = os.fork()
+        with rabit.Node("other", **network) as own:
+            own.post("Pose", idl.Uav.Pose())
+            assert own.flush(10)
+        print("child" if child == 0 else "parent", flush=True)
+        if child:
+            assert os.waitpid(child, 0)[1] == 0
+        """
+    with run(program(one_network, text)) as child:
+        out, errors = child.communicate(timeout=60)
+        assert (child.returncode, sorted(out.split())) == (0, ["child", "parent"]), errors
 
 
 def test_iterations_end_when_the_node_stops(idl, one_network):

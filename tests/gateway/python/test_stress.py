@@ -153,20 +153,33 @@ def interrupted(idl, transport):
         node.stop()
 
 
+def in_fork(function):
+    """Runs it in a forked process, which must end well."""
+    child = os.fork()
+    if child == 0:
+        code = 1
+        try:
+            function()
+            code = 0
+        finally:
+            os._exit(code)
+    assert os.waitpid(child, 0)[1] == 0
+
+
 def forked(idl, transport):
+    def beside(node):
+        with pytest.raises(RuntimeError, match="forked process"):
+            node.post("Pose", idl.Uav.Pose())
+        with pytest.raises(RuntimeError, match="was forked while nodes ran"):
+            make(idl, settings(transport)).start()
+
+    def alone():
+        with make(idl, settings(transport)) as own:
+            own.post("Pose", idl.Uav.Pose())
+
     with make(idl, settings(transport)) as node:
-        child = os.fork()
-        if child == 0:
-            code = 1
-            try:
-                with pytest.raises(RuntimeError, match="forked process"):
-                    node.post("Pose", idl.Uav.Pose())
-                with make(idl, settings(transport)) as own:
-                    own.post("Pose", idl.Uav.Pose())
-                code = 0
-            finally:
-                os._exit(code)
-        assert os.waitpid(child, 0)[1] == 0
+        in_fork(lambda: beside(node))
+    in_fork(alone)
 
 
 def left():
