@@ -1,7 +1,7 @@
 """Looks at a recorded flight: tracks, altitudes, and how old the poses were at other nodes. As a notebook: cells begin with
 `# %%`.
 
-    analysis.py RECORDING... --figures FOLDER
+    analysis.py RECORDING... --figures FOLDER [--wall-clock]
 """
 
 # %% The recordings of several nodes come onto one time line.
@@ -17,9 +17,10 @@ import rabit  # noqa: E402
 
 parser = argparse.ArgumentParser(description=__doc__)
 parser.add_argument("recordings", nargs="+")
+parser.add_argument("--wall-clock", action="store_true", help="for recordings whose clocks nothing relates, as of two flights")
 parser.add_argument("--figures", type=pathlib.Path, default=pathlib.Path("."))
 options = parser.parse_args()
-flight = rabit.open(*options.recordings)
+flight = rabit.open(*options.recordings, wall_clock=options.wall_clock)
 for topic in flight.topics:
     print(f"{topic.messages:8} {topic.name} ({topic.type})")
 
