@@ -120,8 +120,8 @@ ALLOWED = {
                      "network", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room presence",
                      "room manager", "room mcap",
                      "room recording", "room merge", "room replay", "room backfill", "backfill messages"},
-    "gateway/python": {"core", "idl", "idl dynamic", "factory", "gateway", "recording", "backfill", "gateway messages", "transport",
-                       "room names", "room mcap", "room recording", "room merge"},
+    "gateway/python": {"core", "idl", "idl dynamic", "factory", "gateway", "recording", "backfill", "gateway messages",
+                       "transport", "room names", "room mcap", "room recording", "room merge"},
     # Whole nodes on a simulated network, for tests.
     "gateway/testing": {"core", "transport", "simulated backend", "gateway", "testing"},
     "gateway/node": {"core", "idl", "factory", "gateway", "node", "recording", "backfill", "network", "CLI11"},
