@@ -31,7 +31,7 @@ std::optional<ReceivedCommand> InboundQueue::Take()
 void InboundQueue::Close()
 {
     _isClosed = true;
-    _ready->Notify();
+    _ready->Close();
 }
 
 }  // namespace Rabit::Python

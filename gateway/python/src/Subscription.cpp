@@ -171,7 +171,7 @@ void Subscription::Close()
         _shared->New.clear();
         sources.swap(_sources);
     }
-    _shared->Ready.Notify();
+    _shared->Ready.Close();
 }
 
 }  // namespace Rabit::Python

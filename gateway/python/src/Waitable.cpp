@@ -38,15 +38,30 @@ void Waitable::Notify()
 {
     if (_armed.exchange(false))
     {
-        const std::uint64_t one = 1;
-        static_cast<void>(!write(_fd, &one, sizeof one));
+        Write();
     }
+}
+
+void Waitable::Write()
+{
+    const std::uint64_t one = 1;
+    static_cast<void>(!write(_fd, &one, sizeof one));
 }
 
 void Waitable::Drain()
 {
     std::uint64_t count = 0;
     static_cast<void>(!read(_fd, &count, sizeof count));
+    if (_isClosed)
+    {
+        Write();
+    }
+}
+
+void Waitable::Close()
+{
+    _isClosed = true;
+    Write();
 }
 
 bool Waitable::Wait(std::optional<double> seconds, const std::function<bool()> &isReady)

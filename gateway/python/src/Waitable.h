@@ -25,13 +25,18 @@ public:
     // Any thread; takes a microsecond, and no lock.
     void Notify();
     void Drain();
+    // Like Notify, and from now on Fd stays readable: a thread that drains it takes the end from nobody.
+    void Close();
     // Waits without the GIL until `isReady` (called with the GIL) returns true. False after so many seconds;
     // empty: waits for ever. Signals are handled meanwhile, so Ctrl-C ends it with KeyboardInterrupt.
     bool Wait(std::optional<double> seconds, const std::function<bool()> &isReady);
 
 private:
+    void Write();
+
     const int _fd;
     std::atomic<bool> _armed{false};
+    std::atomic<bool> _isClosed{false};
 };
 
 }  // namespace Rabit::Python

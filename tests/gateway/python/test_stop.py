@@ -2,6 +2,7 @@
 
 import logging
 import os
+import select
 
 import pytest
 
@@ -69,6 +70,17 @@ def test_a_manager_that_stops_its_node_ends_the_iterations(one_network):
         print("ended")
         """)
     assert out == "shutdown\nended\n"
+
+
+def test_threads_and_an_event_loop_that_wait_for_one_stream_all_hear_of_its_end(idl, one_network):
+    node = rabit.Node("planner", accept={"Commands": [idl.Uav.Goto]}, **one_network)
+    with node:
+        cores = [node.subscribe("Pose", idl.Uav.Pose)._core, node.queue("Commands")._core]
+        for core in cores:
+            core.arm()
+    for core in cores:
+        core.drain()
+        assert select.select([core.fd], [], [], 0)[0]
 
 
 @pytest.mark.skipif("RABIT_HELD" not in os.environ, reason="RABIT_HELD is not set")
