@@ -1,7 +1,5 @@
 #include "VendorDomain.h"
 
-#include <malloc.h>
-
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -37,16 +35,6 @@ constexpr dds_domainid_t FirstOther = 1000;
 bool IsOfSamplesSent(std::span<const std::uint8_t> head)
 {
     return SendingSamples::Now() || IsOfSamples(head);
-}
-
-// Keeps the vendor's receive buffers out of the heap. Each of them would leave a hole there that small
-// objects break up, and the process would grow with each peer that starts. glibc maps large blocks as pages
-// of their own only until one of them is freed, then it moves the bound up; a bound that is set stays
-// (mallopt(3)).
-void KeepLargeBlocksOffTheHeap()
-{
-    constexpr int largest = 128 * 1024;  // glibc's bound at the start
-    ::mallopt(M_MMAP_THRESHOLD, largest);
 }
 
 bool IsSame(const RabitCyclonePlace &one, const RabitCyclonePlace &other)
@@ -421,7 +409,6 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
         _authentication.Prepare();
         _guard.SetAuthentication(_authentication);
     }
-    KeepLargeBlocksOffTheHeap();
     const std::string config = MakeDomainConfig(settings);
     if (settings.Security && Id() != static_cast<dds_domainid_t>(settings.Domain))
     {
