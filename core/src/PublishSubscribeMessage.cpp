@@ -211,6 +211,16 @@ void PublishSubscribeMessage::PutAfterLast(PostTime &time, std::unique_lock<std:
     }
 }
 
+// The global copy holds the contents of a post. Requires the lock.
+inline RabitEvent::Handlers PublishSubscribeMessage::Publish(const PostTime &time)
+{
+    _message->_timeStamp = time.GpsTimeSeconds;
+    _message->_exactStamp = time.GpsTime;
+    _message->_postedAt = time.Monotonic;
+    _sequence.store(_sequence.load(std::memory_order_relaxed) + 1, std::memory_order_release);
+    return _published.Snapshot();
+}
+
 void PublishSubscribeMessage::Post(RabitMessage &msg, PostTime &time, bool byOwnClock)
 {
     RabitEvent::Handlers handlers;
@@ -234,14 +244,26 @@ void PublishSubscribeMessage::Post(RabitMessage &msg, PostTime &time, bool byOwn
                 throw;
             }
         }
-        const std::uint64_t sequence = _sequence.load(std::memory_order_relaxed) + 1;
-        _message->_timeStamp = time.GpsTimeSeconds;
-        _message->_exactStamp = time.GpsTime;
-        _message->_postedAt = time.Monotonic;
-        Mark(msg, time, sequence & ~Exposed);
-        _sequence.store(sequence, std::memory_order_release);
-        handlers = _published.Snapshot();
+        handlers = Publish(time);
+        Mark(msg, time, Sequence());
     }
+    handlers.Call();
+}
+
+void PublishSubscribeMessage::PostContents(std::unique_ptr<RabitMessage> &message, const PostTime &time)
+{
+    std::unique_lock<std::mutex> lock(*_mutex);
+    const bool isExposed = (_sequence.load(std::memory_order_relaxed) & Exposed) != 0;
+    if (!message || typeid(*message) != _type || isExposed || RabitManagerTrace::Current() != nullptr)
+    {
+        lock.unlock();
+        PostMessage(message.get(), time);
+        return;
+    }
+    std::swap(message, _message);
+    std::swap(message->_globalPublishSubscribeMessageRef, _message->_globalPublishSubscribeMessageRef);
+    const RabitEvent::Handlers handlers = Publish(time);
+    lock.unlock();
     handlers.Call();
 }
 

@@ -143,6 +143,7 @@ void ForeignReader::OnEnd(const SampleInfo &info)
 
 void ForeignReader::Post(SampleBytes bytes, const SampleInfo &info, Duration now)
 {
+    _scratch->RabitMessage::Clear();  // it may hold a former post, with ints that a manager here set
     if (!_type.Deserialize(bytes, *_scratch))
     {
         if (CountUndecodable(bytes.size()))
@@ -157,7 +158,7 @@ void ForeignReader::Post(SampleBytes bytes, const SampleInfo &info, Duration now
         const double stamp =
             _workspace.GetClock().GpsTimeSeconds() - duration<double>(now - postedAt).count();
         const RabitHandlerThread::Scope scope(_handlers, _rule.Local, _global);
-        _global->PostMessage(_scratch.get(), PostTime{stamp, postedAt});
+        _global->PostContents(_scratch, PostTime{stamp, postedAt});
     }
     const std::lock_guard lock(_mutex);
     _undecodableInARow = 0;

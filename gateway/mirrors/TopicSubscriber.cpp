@@ -206,6 +206,7 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
     {
         return Outcome::Repeated;
     }
+    _scratch->RabitMessage::Clear();  // it may hold a former post, with ints that a manager here set
     if (!_type.Deserialize(bytes, *_scratch))
     {
         return Outcome::Undecodable;
@@ -221,7 +222,7 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
     const double stamp = GpsTime::ToGps(info.SourceTime + origin->SourceToWall.count());
     const std::shared_ptr<PublishSubscribeMessage> &global = source.Local->Global();
     const RabitHandlerThread::Scope scope(_handlers, source.LocalName, global);
-    global->PostMessage(_scratch.get(), PostTime{stamp, *posted});
+    global->PostContents(_scratch, PostTime{stamp, *posted});
     source.Posted = Sample{info.Incarnation, info.SourceTime};
     if (_tap)
     {

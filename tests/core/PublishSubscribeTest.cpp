@@ -377,6 +377,78 @@ TEST(PublishSubscribe, APostWithAGivenTimeKeepsItAndIsNeverMissedThoughTheTimeRe
     }
 }
 
+// Posts contents to the name of a pair, by a message that belongs to the poster alone.
+struct ContentsPoster
+{
+    std::unique_ptr<RabitMessage> Message = std::make_unique<NumberMessage>();
+
+    NumberMessage &Number() { return static_cast<NumberMessage &>(*Message); }
+    void Post(Pair<NumberMessage> &pair, int number, const PostTime &time)
+    {
+        Number().Number = number;
+        pair.Poster->GetGlobalPublishSubscribeMessageRef()->PostContents(Message, time);
+    }
+};
+
+TEST(PublishSubscribe, PostedContentsAreFetchedWithTheirTimeAndCallTheHandlers)
+{
+    Pair<NumberMessage> pair;
+    ContentsPoster poster;
+    int calls = 0;
+    pair.Reader->Register_SomethingPublished([&calls] { ++calls; });
+    for (const int number : {7, 8, 9})
+    {
+        poster.Post(pair, number, PostTime{500.0, 3s});
+        EXPECT_TRUE(pair.Reader->FetchMessage());
+        EXPECT_EQ(pair.Reader->Number, number);
+        EXPECT_EQ(pair.Reader->GetTimeStamp(), 500.0);
+        EXPECT_FALSE(pair.Reader->FetchMessage());
+    }
+    EXPECT_EQ(calls, 3);
+}
+
+TEST(PublishSubscribe, APosterOfContentsGetsThoseOfThePostBefore)
+{
+    Pair<NumberMessage> pair;
+    ContentsPoster poster;
+    poster.Post(pair, 7, PostTime{500.0, 3s});
+    poster.Post(pair, 8, PostTime{501.0, 3s});
+    EXPECT_EQ(poster.Number().Number, 7);
+}
+
+TEST(PublishSubscribe, APosterOfContentsStaysRegisteredAndTheGlobalCopyDoesNot)
+{
+    Pair<NumberMessage> pair;
+    ContentsPoster poster;
+    const std::weak_ptr<PublishSubscribeMessage> global = pair.Poster->GetGlobalPublishSubscribeMessageRef();
+    poster.Message->SetGlobalPublishSubscribeMessageRef(global.lock());
+    poster.Post(pair, 7, PostTime{500.0, 3s});
+    EXPECT_EQ(poster.Message->GetGlobalPublishSubscribeMessageRef(), global.lock());
+    EXPECT_FALSE(global.lock()->GetTestMessage()->GetGlobalPublishSubscribeMessageRef());
+}
+
+TEST(PublishSubscribe, AGlobalCopyThatATestHoldsStaysWhereItIsWhenContentsArePosted)
+{
+    Pair<NumberMessage> pair;
+    ContentsPoster poster;
+    const auto global = pair.Poster->GetGlobalPublishSubscribeMessageRef();
+    const auto *held = dynamic_cast<const NumberMessage *>(global->GetTestMessage().get());
+    poster.Post(pair, 7, PostTime{500.0, 3s});
+    EXPECT_EQ(global->GetTestMessage().get(), held);
+    EXPECT_EQ(held->Number, 7);
+}
+
+TEST(PublishSubscribe, ContentsOfAnotherTypeAreNotPosted)
+{
+    Pair<NumberMessage> pair;
+    const auto global = pair.Poster->GetGlobalPublishSubscribeMessageRef();
+    std::unique_ptr<RabitMessage> other = std::make_unique<AssigningMessage>();
+    std::unique_ptr<RabitMessage> none;
+    EXPECT_THROW(global->PostContents(other, PostTime{500.0, 3s}), std::invalid_argument);
+    EXPECT_THROW(global->PostContents(none, PostTime{500.0, 3s}), std::invalid_argument);
+    EXPECT_EQ(global->GetNumberOfPosts(), 0u);
+}
+
 TEST(MessageAge, IsTheTimeSinceThePostByTheMonotonicClockWhateverTheWallClockDoes)
 {
     Pair<NumberMessage> pair;

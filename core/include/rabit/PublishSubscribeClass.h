@@ -66,6 +66,9 @@ public:
     // Posts with a time given by the caller: for messages from other nodes, which keep the time of their
     // origin. Readers see the post even if its time repeats or goes back.
     void PostMessage(RabitMessage *msg, const PostTime &time);
+    // The same without a copy, for a poster that fills its message anew each time: the message is exchanged
+    // for another one of its type, with former contents. Only a registration stays with the poster.
+    void PostContents(std::unique_ptr<RabitMessage> &message, const PostTime &time);
 
     // Copies the global copy to the message if it differs from what the message last posted or fetched
     // here. Returns whether it copied. Takes no lock if there is nothing new. A message that was never
@@ -93,6 +96,7 @@ private:
     static constexpr std::uint64_t Exposed = std::uint64_t{1} << 63;
 
     void Post(RabitMessage &msg, PostTime &time, bool byOwnClock);
+    RabitEvent::Handlers Publish(const PostTime &time);
     void PostTraced(RabitMessage &msg, const PostTime *time);
     void TellFetched(const RabitMessage &msg) const;
     void PutAfterLast(PostTime &time, std::unique_lock<std::mutex> &lock);
