@@ -80,9 +80,11 @@ OutgoingMessage ReadOutgoing(std::span<const std::uint8_t> datagram)
                 const bool announces = whole && IsAnnouncement(part);
                 (announces ? announcements : others) += 1;
                 samples += whole && isOfSamples ? 1 : 0;
-                // The digest omits the reader that it is for.
-                digest =
-                    31 * digest + DigestOf(part.Body().subspan(std::min(WriterInData, part.Body().size())));
+                if (announces)
+                {
+                    // The digest omits the reader that it is for.
+                    digest = DigestOf(part.Body().subspan(std::min(WriterInData, part.Body().size())));
+                }
                 break;
             }
             case SubmessageKind::Heartbeat:
