@@ -30,12 +30,6 @@ std::shared_ptr<const PeerSession> VendorCore::IdentityOf(const WriterId &endpoi
     return gone == nullptr ? nullptr : *gone;
 }
 
-std::vector<Rtps::GuidPrefix> VendorCore::ParticipantsOf(const std::string &node) const
-{
-    const std::lock_guard lock(_mutex);
-    return _peers.Of(node);
-}
-
 std::vector<PeerPlace> VendorCore::PeerPlaces() const
 {
     const std::lock_guard lock(_mutex);

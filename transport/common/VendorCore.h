@@ -36,9 +36,8 @@ public:
     // Identity of the present or former participant of a writer or reader; nullptr if it is not a Rabit node,
     // or unknown.
     std::shared_ptr<const PeerSession> IdentityOf(const WriterId &endpoint) const;
-    // The participants to which samples written to the node go (PeerSessions).
-    std::vector<Rtps::GuidPrefix> ParticipantsOf(const std::string &node) const;
-    // The same, one after the other, under a lock: visit(prefix).
+    // The participants to which samples written to the node go (PeerSessions), one after the other, under a
+    // lock: visit(prefix).
     template <typename Visit>
     void VisitParticipantsOf(const std::string &node, const Visit &visit) const
     {

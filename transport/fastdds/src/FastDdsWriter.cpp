@@ -51,7 +51,9 @@ FastDdsWriter::~FastDdsWriter()
 WriteResult FastDdsWriter::SendTo(const std::string &node, const SampleEncoder &sample,
                                   std::int64_t sourceTime)
 {
-    const Targets targets = _core->ParticipantsOf(node);
+    static thread_local Targets targets;
+    targets.clear();
+    _core->VisitParticipantsOf(node, [](const Rtps::GuidPrefix &prefix) { targets.push_back(prefix); });
     return Send(sample, sourceTime, false, &targets);
 }
 

@@ -11,10 +11,11 @@ namespace Rabit::FastDds
 namespace
 {
 
-// Buffers up to this size are kept for reuse, so that small samples need no allocation in the steady state.
-constexpr std::uint32_t LargestKept = 16u << 10;
+// Buffers up to this size are kept for reuse, so that samples of one datagram need no
+// allocation in the steady state.
+constexpr std::uint32_t LargestKept = 64u << 10;
 constexpr std::uint32_t SmallestBuffer = 512;
-constexpr std::size_t MostKept = 64;
+constexpr std::size_t MostKept = 1u << 20;  // bytes
 constexpr std::align_val_t Alignment{16};
 
 std::uint32_t CapacityFor(std::uint32_t size)
@@ -60,6 +61,7 @@ PayloadPool::Buffer PayloadPool::Acquire(std::uint32_t size)
                 const Buffer found = _free[i];
                 _free[i] = _free.back();
                 _free.pop_back();
+                _kept -= found.Capacity;
                 return found;
             }
         }
@@ -72,9 +74,10 @@ void PayloadPool::Release(Buffer buffer)
     if (buffer.Capacity <= LargestKept)
     {
         const std::lock_guard lock(_mutex);
-        if (_free.size() < MostKept)
+        if (_kept + buffer.Capacity <= MostKept)
         {
             _free.push_back(buffer);
+            _kept += buffer.Capacity;
             return;
         }
     }

@@ -60,6 +60,7 @@ private:
     const std::function<void()> _onRefused;
     std::mutex _mutex;
     std::vector<Buffer> _free;           // guarded by _mutex
+    std::size_t _kept = 0;               // bytes in them, too
     std::atomic<std::size_t> _held = 0;  // bytes in changes
 };
 
