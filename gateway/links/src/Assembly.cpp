@@ -9,6 +9,9 @@ namespace
 {
 
 constexpr std::size_t FirstRoom = 64 * 1024;
+// With each growth all that has come is copied. A message of 1 MB that grows twofold is copied once more in
+// all, one that grows fourfold a third of that.
+constexpr std::size_t Growth = 4;
 
 }  // namespace
 
@@ -55,7 +58,7 @@ bool Assembly::MakeRoom(std::size_t size, LinkTime now)
         return true;
     }
     const std::size_t wanted =
-        std::max(size, std::min(static_cast<std::size_t>(_total), std::max(2 * has, FirstRoom)));
+        std::max(size, std::min(static_cast<std::size_t>(_total), std::max(Growth * has, FirstRoom)));
     if (!_memory.Take(*this, wanted - has, now))
     {
         return false;
