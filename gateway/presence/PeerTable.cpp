@@ -189,6 +189,7 @@ bool PeerTable::NoteTwin(Peer &peer, const HeardBeat &heard)
     peer.TwinSince = now;
     const bool news = !peer.Twice && peer.TwinBeats >= BeatsOfATwin;
     peer.Twice = peer.Twice || news;
+    Expect(peer);
     return news;
 }
 
@@ -202,6 +203,7 @@ PeerTable::Change PeerTable::OnOwnName(const HeardBeat &heard)
         _ownTwinPlace = PlaceIn(heard.Beat, _ownTwinPlace);
         change.State = !_ownTwice && _ownTwinBeats >= BeatsOfATwin;
         _ownTwice = _ownTwice || change.State;
+        _nextChange = std::min(_nextChange, OwnChange());
     }
     return change;
 }
@@ -244,6 +246,7 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
     {
         TakeIn(*peer, heard, change);
     }
+    Expect(*peer);
     return change;
 }
 
@@ -413,6 +416,10 @@ PeerTable::Change PeerTable::OnLeft(const std::string &node, std::uint64_t incar
 PeerTable::Change PeerTable::Advance(Duration now)
 {
     Change change;
+    if (now < _nextChange)
+    {
+        return change;
+    }
     if (_ownTwice && now - _ownTwinSince > TwinMemory)
     {
         _ownTwice = false;
@@ -444,32 +451,39 @@ PeerTable::Change PeerTable::Advance(Duration now)
             change.State |= SetState(peer, NodeState::STALE, NoBeatWithin(peer.StaleAfter()));
         }
     }
+    _nextChange = OwnChange();
+    for (const auto &[name, peer] : _peers)
+    {
+        Expect(peer);
+    }
     return change;
 }
 
 std::optional<PeerTable::Duration> PeerTable::NextChange() const
 {
-    std::optional<Duration> next;
-    const auto consider = [&next](Duration when) { next = next ? std::min(*next, when) : when; };
-    // Just after the limit, because Advance compares with `>`.
+    return _nextChange == Duration::max() ? std::nullopt : std::optional(_nextChange);
+}
+
+// When the name of this node has no twin any more, as Advance sees it, which compares with `>`.
+PeerTable::Duration PeerTable::OwnChange() const
+{
+    return _ownTwice ? _ownTwinSince + TwinMemory + Duration(1) : Duration::max();
+}
+
+// Takes note of when Advance will change that peer if nothing is heard of it.
+void PeerTable::Expect(const Peer &peer)
+{
     constexpr Duration after(1);
-    if (_ownTwice)
+    if (peer.Twice)
     {
-        consider(_ownTwinSince + TwinMemory + after);
+        _nextChange = std::min(_nextChange, peer.TwinSince + TwinMemory + after);
     }
-    for (const auto &[name, peer] : _peers)
+    if (peer.State != NodeState::LOST)
     {
-        if (peer.Twice)
-        {
-            consider(peer.TwinSince + TwinMemory + after);
-        }
-        if (peer.State != NodeState::LOST)
-        {
-            const bool staleIsNext = peer.State == NodeState::UP && !peer.IsTool;
-            consider(peer.LastHeard + (staleIsNext ? peer.StaleAfter() : peer.LostAfter()) + after);
-        }
+        const bool staleIsNext = peer.State == NodeState::UP && !peer.IsTool;
+        const Duration silence = staleIsNext ? peer.StaleAfter() : peer.LostAfter();
+        _nextChange = std::min(_nextChange, peer.LastHeard + silence + after);
     }
-    return next;
 }
 
 bool PeerTable::IsEchoDue(const Peer &peer, Duration now) const

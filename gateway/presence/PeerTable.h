@@ -137,9 +137,9 @@ public:
     // Takes over the announcement of a node, if its beats here have the same digest, so that it need not be
     // requested by this path. Returns true if this table lacked it.
     bool Adopt(const Peer &elsewhere);
-    // Lets time pass.
+    // Lets time pass. Before NextChange it does nothing, however many peers there are.
     Change Advance(Duration now);
-    // When Advance would next change something; empty: not before the next input.
+    // When Advance may next change something, and not later; empty: not before the next input.
     std::optional<Duration> NextChange() const;
 
     const Peer *Find(const std::string &node) const;
@@ -179,7 +179,9 @@ private:
                                                      Change &change);
     Change OnGoodbye(const HeardBeat &heard);
     static bool IsNewLife(Peer &peer, const HeardBeat &heard);
-    static bool NoteTwin(Peer &peer, const HeardBeat &heard);
+    bool NoteTwin(Peer &peer, const HeardBeat &heard);
+    Duration OwnChange() const;
+    void Expect(const Peer &peer);
     static void BeginLife(Peer &peer, const HeardBeat &heard);
     bool IsEchoDue(const Peer &peer, Duration now) const;
     static bool IsEchoUrgent(const Peer &peer);
@@ -200,6 +202,7 @@ private:
     std::size_t _tools = 0;  // of these
     MissingOffers _missing;
     SentBeats _sent;
+    Duration _nextChange = Duration::max();  // not later than the next change by Advance
     std::uint64_t _forgotten = 0;
     std::uint64_t _crowdedOut = 0;
     std::uint64_t _malformed = 0;

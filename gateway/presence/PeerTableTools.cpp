@@ -32,12 +32,16 @@ PeerTable::Change PeerTable::OnToolBeat(const HeardBeat &heard)
         return change;
     }
     Peer *tool = GetOrMakeTool(heard);
-    if (tool == nullptr || Duration(heard.Beat.source_ns) <= tool->LastBeatSource)
+    if (tool == nullptr)
     {
         return change;
     }
-    Measure(*tool, heard);
-    change.Beat = true;
+    if (Duration(heard.Beat.source_ns) > tool->LastBeatSource)
+    {
+        Measure(*tool, heard);
+        change.Beat = true;
+    }
+    Expect(*tool);
     return change;
 }
 

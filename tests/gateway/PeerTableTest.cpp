@@ -92,6 +92,40 @@ TEST_F(PeerTableTest, SaysWhenItNextChanges)
     EXPECT_FALSE(table.NextChange().has_value());
 }
 
+TEST_F(PeerTableTest, ANodeThatFallsSilentTurnsStaleInTimeHoweverOftenOthersBeat)
+{
+    Hear("uav1", 5, 1s);
+    for (Ns at = 1200ms; at <= 2400ms; at += 300ms)
+    {
+        Hear("uav2", 5, at);
+    }
+    EXPECT_FALSE(table.Advance(2500ms).State);
+    EXPECT_TRUE(table.Advance(2501ms).State);
+    EXPECT_EQ(StateOf("uav1"), NodeState::STALE);
+    EXPECT_EQ(StateOf("uav2"), NodeState::UP);
+}
+
+TEST_F(PeerTableTest, ABeatThatAnnouncesTheNextSoonerBringsTheNextChangeForward)
+{
+    HeardBeat slow = BeatOf("uav1", 5, 1s);
+    slow.Beat.next_ms = 5000;
+    table.OnBeat(slow);
+    HeardBeat quick = BeatOf("uav1", 5, 2s);
+    quick.Beat.next_ms = 200;
+    table.OnBeat(quick);
+    EXPECT_FALSE(table.Advance(2600ms).State);
+    EXPECT_TRUE(table.Advance(2601ms).State);
+    EXPECT_EQ(StateOf("uav1"), NodeState::STALE);
+}
+
+TEST_F(PeerTableTest, TheNextChangeMovesOnWhenItsTimeHasComeAndTheNodeWasHeard)
+{
+    Hear("uav1", 5, 1s);
+    Hear("uav1", 5, 2s);
+    EXPECT_FALSE(table.Advance(2501ms).State);
+    EXPECT_EQ(table.NextChange(), 3500ms + 1ns);
+}
+
 TEST_F(PeerTableTest, ABeatAfterALossMakesTheNodeUpAgainInTheSameLife)
 {
     Hear("uav1", 5, 1s);
