@@ -1,14 +1,20 @@
-// The traffic between the gateways of an idle fleet: whole nodes in one process, over a wire that counts,
-// under a clock that the program advances. All subscribe to the `Note` of `ground` alone.
+// What the gateways of a fleet cost: whole nodes in one process, over a wire that counts, under a clock that
+// the program advances.
 //
-// Usage: bench_fleet NODES. Prints, for one node and second, the samples and bytes that it writes and that
-// arrive.
+// Usage: bench_fleet NODES [idle | flying]. Prints, for one node and second, the samples and bytes that it
+// writes and that arrive. `idle`: all subscribe to the `Note` of `ground` alone, and nobody posts one.
+// `flying`: all post a `Note` twice a second, `ground` follows all nodes, the others follow ten neighbours
+// and `ground`, and a manager of each node fetches them and `Gateway/Fleet`. With
+// `valgrind --tool=callgrind --instr-atstart=no` the instructions of the measured seconds are counted.
 #include "WiredTransport.h"
 
 #include <rabit/ManualClock.h>
+#include <rabit/RabitManager.h>
 #include <rabit/RabitSteppedReactor.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayManager.h>
+
+#include <valgrind/callgrind.h>
 
 #include <algorithm>
 #include <chrono>
@@ -20,6 +26,13 @@
 #include <vector>
 
 #include "bench.idl.h"
+#include "gateway.idl.h"
+
+// A function with a plain name, for callgrind: the work of `ground`.
+extern "C" [[gnu::noinline]] void RunGround(Rabit::RabitSteppedReactor &reactor)
+{
+    reactor.RunDue();
+}
 
 namespace Rabit::Bench
 {
@@ -30,6 +43,73 @@ using namespace std::chrono_literals;
 
 constexpr auto Settle = 5s;
 constexpr auto Measured = 10s;
+constexpr auto MeasuredInFlight = 2s;
+constexpr int Neighbours = 10;
+constexpr auto PosePeriod = 500ms;
+
+std::string NameOf(int number)
+{
+    return number == 0 ? "ground" : "uav" + std::to_string(number);
+}
+
+// The nodes that a node of a flying fleet follows: ground all others, the others their neighbours in a ring.
+std::vector<std::string> FollowedBy(int number, int nodes)
+{
+    std::vector<std::string> names;
+    for (int other = 0; other < nodes; ++other)
+    {
+        const int distance = std::min((other - number + nodes) % nodes, (number - other + nodes) % nodes);
+        if (other != number && (number == 0 || other == 0 || distance <= Neighbours / 2))
+        {
+            names.push_back(NameOf(other));
+        }
+    }
+    return names;
+}
+
+// Posts a `Note` each half second, and fetches what comes.
+class Pilot final : public RabitManager
+{
+public:
+    Pilot(const std::vector<std::string> &followed, RabitWorkspace &workspace)
+        : RabitManager("Pilot", workspace)
+    {
+        AddPublishSubscribeMessage("Note", _note);
+        _note->padding.assign(80, 0x5a);
+        Follow(FleetMessageName, std::make_shared<Gateway::Fleet>());
+        for (const std::string &node : followed)
+        {
+            Follow(node + "/Note", std::make_shared<::Bench::Sample>());
+        }
+        SetWakeupTimeDelayMSec(static_cast<int>(std::chrono::milliseconds(PosePeriod).count()));
+    }
+
+    void ExecuteUnitOfWork() override
+    {
+        for (const auto &message : _followed)
+        {
+            message->FetchMessage();
+        }
+        const auto now = GetWorkspace().GetClock().Monotonic();
+        if (now >= _due)
+        {
+            _due = now + PosePeriod;
+            _note->PostMessage();
+        }
+    }
+
+private:
+    void Follow(const std::string &name, const std::shared_ptr<RabitMessage> &message)
+    {
+        AddPublishSubscribeMessage(name, message);
+        WakeUpManagerOnMessagePost(message);
+        _followed.push_back(message);
+    }
+
+    std::shared_ptr<::Bench::Sample> _note = std::make_shared<::Bench::Sample>();
+    std::vector<std::shared_ptr<RabitMessage>> _followed;
+    std::chrono::nanoseconds _due{0};
+};
 
 struct Node
 {
@@ -39,19 +119,18 @@ struct Node
         Reactor.AddManager(
             std::make_unique<GatewayManager>(config, std::make_shared<WiredTransport>(wire), Workspace,
                                              [state = std::uint64_t{42}]() mutable { return ++state; }));
-        Reactor.Start();
     }
 
     RabitWorkspace Workspace;
     RabitSteppedReactor Reactor;
 };
 
-GatewayConfig ConfigOf(int number)
+GatewayConfig ConfigOf(int number, std::vector<std::string> from)
 {
     GatewayConfig config;
-    config.Node = number == 0 ? "ground" : "uav" + std::to_string(number);
+    config.Node = NameOf(number);
     config.Publish.push_back({.Message = "Note", .Type = "Bench::Sample", .Qos = QosProfile::Telemetry});
-    config.Subscribe.push_back({.Message = "Note", .Type = "Bench::Sample", .From = {"ground"}});
+    config.Subscribe.push_back({.Message = "Note", .Type = "Bench::Sample", .From = std::move(from)});
     config.Accept.push_back({.Queue = "Orders", .Types = {"Bench::Sample"}});
     return config;
 }
@@ -59,11 +138,21 @@ GatewayConfig ConfigOf(int number)
 class Fleet
 {
 public:
-    explicit Fleet(int nodes)
+    Fleet(int nodes, bool isFlying)
     {
         for (int i = 0; i < nodes; ++i)
         {
-            _nodes.push_back(std::make_unique<Node>(ConfigOf(i), _wire, _clock));
+            const auto followed = isFlying ? FollowedBy(i, nodes) : std::vector<std::string>{"ground"};
+            const auto from = isFlying && i == 0 ? std::vector<std::string>{"*"} : followed;
+            _nodes.push_back(std::make_unique<Node>(ConfigOf(i, from), _wire, _clock));
+            if (isFlying)
+            {
+                _nodes.back()->Reactor.AddManager(
+                    std::make_unique<Pilot>(followed, _nodes.back()->Workspace));
+            }
+            _nodes.back()->Reactor.Start();
+            // Nodes beat and post at different times.
+            RunFor(std::chrono::nanoseconds(Settle) / nodes);
         }
     }
 
@@ -73,6 +162,7 @@ public:
         while (_clock->Monotonic() < end)
         {
             auto next = end;
+            RunGround(_nodes.front()->Reactor);
             for (const auto &node : _nodes)
             {
                 node->Reactor.RunDue();
@@ -98,18 +188,24 @@ private:
 
 int main(int argc, char **argv)
 {
-    const int nodes = argc == 2 ? std::atoi(argv[1]) : 0;
-    if (nodes < 1)
+    const int nodes = argc == 2 || argc == 3 ? std::atoi(argv[1]) : 0;
+    const std::string what = argc == 3 ? argv[2] : "idle";
+    if (nodes < 1 || (what != "idle" && what != "flying"))
     {
-        std::cerr << "usage: bench_fleet NODES\n";
+        std::cerr << "usage: bench_fleet NODES [idle | flying]\n";
         return 2;
     }
-    Rabit::Bench::Fleet fleet(nodes);
+    const bool isFlying = what == "flying";
+    const std::chrono::nanoseconds measured =
+        isFlying ? Rabit::Bench::MeasuredInFlight : Rabit::Bench::Measured;
+    Rabit::Bench::Fleet fleet(nodes, isFlying);
     fleet.RunFor(Rabit::Bench::Settle);
     const Rabit::Bench::Wire::Traffic before = fleet.Traffic();
-    fleet.RunFor(Rabit::Bench::Measured);
+    CALLGRIND_START_INSTRUMENTATION;
+    fleet.RunFor(measured);
+    CALLGRIND_STOP_INSTRUMENTATION;
     const Rabit::Bench::Wire::Traffic after = fleet.Traffic();
-    const double share = std::chrono::duration<double>(Rabit::Bench::Measured).count() * nodes;
+    const double share = std::chrono::duration<double>(measured).count() * nodes;
     const auto rate = [share](std::uint64_t from, std::uint64_t to)
     { return static_cast<double>(to - from) / share; };
     std::cout << "{\"nodes\": " << nodes << ", \"writes_per_s\": " << rate(before.Writes, after.Writes)

@@ -44,8 +44,12 @@ def latency(transports, scale):
         for size in sizes:
             options = options_of(carriage, size, max(int(ROUND_TRIPS[size] * scale), 100))
             for transport in transports:
-                yield Case("latency", transport, carriage, size,
-                           [RAW_WORKER, NODE, RAW_THREADS, RAW_LISTENER], options)
+                contestants = [RAW_WORKER, NODE, RAW_THREADS, RAW_LISTENER]
+                if (carriage, size) == ("queue", "1 MB"):
+                    # It may wait for ever: a listener of Cyclone DDS that writes waits for acknowledgements, which the
+                    # same thread would receive.
+                    contestants.remove(RAW_LISTENER)
+                yield Case("latency", transport, carriage, size, contestants, options)
             if carriage != "telemetry":
                 yield Case("latency", "none", carriage, size, [LOCAL], options)
 
