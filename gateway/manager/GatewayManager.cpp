@@ -292,6 +292,13 @@ private:
         {
             Forget(node, path, now);
         }
+        if (_paths.size() > 1 && heard.Missed)
+        {
+            for (const PeerTable::Peer *peer : beats.Peers().Heard())
+            {
+                _choice.Missed(peer->Node, path, peer->Beats, now);
+            }
+        }
         if (_paths.size() > 1 && (heard.State || heard.NewLife || heard.Offers))
         {
             for (const PeerTable::Peer *peer : beats.Peers().Heard())
@@ -376,7 +383,8 @@ private:
             _links.PathChanged(node);
             change.State = change.Offers = true;
         }
-        for (std::size_t path = 1; path < _paths.size() && (change.State || change.NewLife); ++path)
+        const bool tellsHeard = _choice.TakeFirstHeardChanged() || change.NewLife;
+        for (std::size_t path = 1; path < _paths.size() && tellsHeard; ++path)
         {
             _paths[path]->Beats().SetFirstHeard(_choice.FirstHeardOn(path));
         }

@@ -53,6 +53,35 @@ void PathChoice::Heard(const std::string &node, std::size_t path, NodeState stat
     Choose(node, of, now);
 }
 
+void PathChoice::Missed(const std::string &node, std::size_t path, const BeatCount &beats, Duration now)
+{
+    if (_paths == 1)
+    {
+        return;
+    }
+    Node &of = NodeOf(node);
+    Way &way = of.Ways.at(path);
+    BeatCount before = std::exchange(way.Beats, beats);
+    if (beats.Heard() < before.Heard() || beats.Missed() < before.Missed())
+    {
+        before = BeatCount();  // of an earlier incarnation
+    }
+    if (way.State != NodeState::UP)
+    {
+        way.Missed = 0.0;  // it has failed for these
+        return;
+    }
+    const auto came = static_cast<double>(beats.Heard() - before.Heard());
+    way.Missed = std::max(way.Missed - MissedForgiven * came, 0.0) +
+                 static_cast<double>(beats.Missed() - before.Missed());
+    if (way.Missed >= MostMissed)
+    {
+        way.Missed = MostMissed;  // the next loss makes it fail again
+        Fail(way, now);
+        Choose(node, of, now);
+    }
+}
+
 bool PathChoice::Unanswered(const std::string &node, Duration now)
 {
     const auto found = _nodes.find(node);
@@ -90,6 +119,31 @@ void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
     }
 }
 
+void PathChoice::ChooseHeard(Node &node, Duration now)
+{
+    std::size_t first = _paths;
+    bool firstRests = true;
+    for (std::size_t path = 0; path < _paths; ++path)
+    {
+        const Way &way = node.Ways[path];
+        if (way.State != NodeState::UP)
+        {
+            continue;
+        }
+        const bool rests = way.RestsUntil && *way.RestsUntil > now;
+        if (rests)
+        {
+            _due = _due ? std::min(*_due, *way.RestsUntil) : *way.RestsUntil;
+        }
+        if (first == _paths || (firstRests && !rests))
+        {
+            first = path;
+            firstRests = rests;
+        }
+    }
+    _firstHeardChanged |= std::exchange(node.FirstHeardOn, first) != first;
+}
+
 void PathChoice::Choose(const std::string &name, Node &node, Duration now)
 {
     // By a path before this one the node does not hear this node.
@@ -98,6 +152,7 @@ void PathChoice::Choose(const std::string &name, Node &node, Duration now)
     {
         first = node.Ways[path].State == NodeState::UP && node.Ways[path].HearsHereFirst ? path : first;
     }
+    ChooseHeard(node, now);
     std::optional<std::size_t> rested;  // that is UP and rests
     std::optional<std::size_t> chosen;
     for (std::size_t path = first; path < _paths && !chosen; ++path)
@@ -111,7 +166,6 @@ void PathChoice::Choose(const std::string &name, Node &node, Duration now)
         {
             // With nothing but paths that rest, the present one stays.
             rested = path == node.Choice || !rested ? path : rested;
-            _due = _due ? std::min(*_due, *way.RestsUntil) : *way.RestsUntil;
         }
     }
     const std::size_t next = chosen.value_or(rested.value_or(node.Choice));
@@ -158,9 +212,7 @@ std::vector<std::string> PathChoice::FirstHeardOn(std::size_t path) const
     std::vector<std::string> nodes;
     for (const auto &[name, node] : _nodes)
     {
-        const auto up = std::find_if(node.Ways.begin(), node.Ways.end(),
-                                     [](const Way &way) { return way.State == NodeState::UP; });
-        if (path > 0 && up - node.Ways.begin() == static_cast<std::ptrdiff_t>(path))
+        if (path > 0 && node.FirstHeardOn == path)
         {
             nodes.push_back(name);
         }

@@ -9,7 +9,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
+
+#include "presence/BeatCount.h"
 
 namespace Rabit
 {
@@ -19,9 +22,11 @@ namespace Rabit
 //
 // - A node is reached by the first path on which it is UP, which has not failed lately, and by which the node
 //   hears this one: each node says of others that it hears them by a later path alone.
-// - A path fails for a node when the node stops being UP on it. After it is UP again, other paths are
-//   preferred for a second, and twice as long after each further failure, up to half a minute. A path that
-//   has not failed for a minute counts as sound again. So a path that comes and goes is left alone.
+// - A path fails for a node when the node stops being UP on it, or when many of its beats do not come by it:
+//   beats that were missed are counted, and a beat that came takes MissedForgiven of that count. After it is
+//   UP again, other paths are preferred for a second, and twice as long after each further failure, up to
+//   half a minute. A path that has not failed for a minute counts as sound again. So a path that comes and
+//   goes is left alone, even if it goes for less time than makes a node STALE.
 // - If the node is UP on no path, the choice stays as it was.
 // - While queue messages for a node are unanswered for longer than usual, and while the node itself sends by
 //   another path, link frames go by a second path as well (Second), since nobody knows yet which of them
@@ -41,6 +46,9 @@ public:
     static constexpr Backoff::Settings Rest{.First = std::chrono::seconds(1),
                                             .Longest = std::chrono::seconds(30)};
     static constexpr Duration Sound = std::chrono::seconds(60);
+    // One loss in ten makes a path fail about once in some minutes, one in five twice a minute.
+    static constexpr double MostMissed = 4.0;
+    static constexpr double MissedForgiven = 0.25;
 
     explicit PathChoice(std::size_t paths) : _paths(paths) {}
 
@@ -49,6 +57,9 @@ public:
     // by that path and by no better one.
     void Heard(const std::string &node, std::size_t path, Gateway::NodeState state, bool hearsHereFirst,
                Duration now);
+    // Beats of the node did not come by that path; `beats` counts all of its incarnation that did or did not.
+    // Before Heard tells what the beat after them says.
+    void Missed(const std::string &node, std::size_t path, const BeatCount &beats, Duration now);
     // A queue message for the node remains unanswered for longer than usual. Returns true if frames go by a
     // second path from now on.
     bool Unanswered(const std::string &node, Duration now);
@@ -65,8 +76,10 @@ public:
     std::size_t Of(std::string_view node) const;
     // A path by which link frames for that node go as well.
     std::optional<std::size_t> Second(std::string_view node, Duration now) const;
-    // The nodes that are UP on that path and on no better one, though there are better ones.
+    // The nodes that are heard well on that path and on no better one, though there are better ones.
     std::vector<std::string> FirstHeardOn(std::size_t path) const;
+    // True if FirstHeardOn has changed since the last call.
+    bool TakeFirstHeardChanged() { return std::exchange(_firstHeardChanged, false); }
     // True if any node that is not LOST is reached by that path. The first path counts while nobody is known.
     bool CarriesAny(std::size_t path) const;
 
@@ -79,24 +92,29 @@ private:
         Duration RestFor{0};  // after the last failure
         std::optional<Duration> RestsUntil;
         std::optional<Duration> FailedAt;
+        BeatCount Beats;             // when some were missed last
+        double Missed = 0.0;         // lately
         Duration CameAt = -Silence;  // the last frame of the links that came by it first
     };
     struct Node
     {
         std::vector<Way> Ways;
         std::size_t Choice = 0;
+        std::size_t FirstHeardOn = 0;  // the first path that is UP and does not rest; else that is UP
         std::optional<std::size_t> Second;
         Duration SecondSince{0};
     };
 
     Node &NodeOf(const std::string &node);
     static void Fail(Way &way, Duration now);
+    void ChooseHeard(Node &node, Duration now);
     void Choose(const std::string &name, Node &node, Duration now);
 
     const std::size_t _paths;
     std::map<std::string, Node, std::less<>> _nodes;
     std::vector<std::string> _changed;
     std::optional<Duration> _due;
+    bool _firstHeardChanged = false;
 };
 
 }  // namespace Rabit

@@ -270,7 +270,9 @@ bool PeerTable::TakeProblems(Peer &peer, const HeardBeat &heard)
 void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
 {
     Measure(peer, heard);
+    const std::uint64_t missed = peer.Beats.Missed();
     peer.Beats.Add(heard.Sequence);
+    change.Missed = peer.Beats.Missed() != missed;
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
     peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
     const bool hearsHereFirst = BeatExtensions::IsFirstHeardHere(heard.Beat, _ownTag);

@@ -125,6 +125,72 @@ TEST_F(PathChoiceTest, BothPathsAreUsedUntilTheNodeIsHeardOnTheChosenOne)
     EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both), std::nullopt);
 }
 
+// Beats of the mesh that come and do not come, in turns, from that time on. Returns when the last
+// loss was noticed.
+PathChoice::Duration Lose(PathChoice &choice, int missed, int came, int times, PathChoice::Duration now)
+{
+    BeatCount beats;
+    std::uint64_t number = 1;
+    PathChoice::Duration noticed = now;
+    beats.Add(number);
+    for (int i = 0; i < times; ++i)
+    {
+        number += static_cast<std::uint64_t>(missed);
+        for (int j = 0; j < came; ++j)
+        {
+            beats.Add(++number);
+            now += 500ms;
+            if (j == 0)
+            {
+                choice.Missed("uav1", Mesh, beats, now);
+                noticed = now;
+            }
+        }
+    }
+    return noticed;
+}
+
+TEST_F(PathChoiceTest, APathByWhichManyBeatsDoNotComeIsLeftThoughItStaysUp)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    const PathChoice::Duration now = Lose(choice, 2, 2, 3, 5s);
+    EXPECT_EQ(ChosenAt(now), Modem);
+    EXPECT_EQ(choice.FirstHeardOn(Modem), std::vector<std::string>{"uav1"});
+    EXPECT_EQ(ChosenAt(now + 1s), Mesh);
+    EXPECT_TRUE(choice.TakeFirstHeardChanged());
+    EXPECT_TRUE(choice.FirstHeardOn(Modem).empty());
+}
+
+TEST_F(PathChoiceTest, APathThatLosesABeatInTenIsKept)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    EXPECT_EQ(ChosenAt(Lose(choice, 1, 9, 100, 5s)), Mesh);
+}
+
+TEST_F(PathChoiceTest, BeatsThatWereMissedWhileThePathWasDeadAreNoSecondFailure)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    Hear(Mesh, NodeState::STALE, 5s);
+    Lose(choice, 20, 1, 1, 5500ms);
+    Hear(Mesh, NodeState::UP, 6s);
+    EXPECT_EQ(ChosenAt(7s), Mesh);
+}
+
+TEST_F(PathChoiceTest, WhileBothEndsLeaveAPathEachTellsTheOtherWhenItHearsWellAgain)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    const PathChoice::Duration now = Lose(choice, 2, 2, 3, 5s);
+    choice.Heard("uav1", Modem, NodeState::UP, true, now);
+    EXPECT_TRUE(choice.TakeFirstHeardChanged());
+    EXPECT_EQ(ChosenAt(now + 1s), Modem);
+    EXPECT_TRUE(choice.TakeFirstHeardChanged());
+    EXPECT_TRUE(choice.FirstHeardOn(Modem).empty());
+}
+
 TEST_F(PathChoiceTest, ANodeThatHearsThisOneByALaterPathAloneIsReachedByThat)
 {
     Hear(Mesh, NodeState::UP, 0s);

@@ -380,6 +380,37 @@ TEST_F(PathsTest, AToolThatHearsOnlyTheModemIsServedThere)
     EXPECT_EQ(got, 1);
 }
 
+// The mesh is there for a second and gone for a second, so it never makes a node STALE.
+TEST_F(PathsTest, APathThatComesAndGoesEachSecondIsLeft)
+{
+    AddBoth();
+    RunFor(3s);
+    constexpr int seconds = 60;
+    int old = 0;  // looks at the pose, of which there are 20 a second
+    for (int i = 0; i < seconds; ++i)
+    {
+        Cut(mesh, i % 2 == 0);
+        for (int look = 0; look < 20; ++look)
+        {
+            RunFor(50ms);
+            old += AgeAtGround() > 0.2 ? 1 : 0;
+        }
+    }
+    EXPECT_LE(old, seconds * 20 / 10);
+}
+
+TEST_F(PathsTest, APathThatLosesABeatInTenStaysInUse)
+{
+    AddBoth();
+    RunFor(3s);
+    mesh.SetFaults("*", "*", {.Loss = 0.1, .Delay = 1ms});
+    for (int i = 0; i < 60; ++i)
+    {
+        RunFor(1s);
+        EXPECT_EQ(Gateway::FindNode(FleetOf("ground"), "uav1")->path, "mesh") << i << " s";
+    }
+}
+
 // Faults of both networks at random: cut in one direction or both, lossy, slow, reordering.
 class PathsUnderFaults : public PathsTest, public ::testing::WithParamInterface<int>
 {
