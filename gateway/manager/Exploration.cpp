@@ -124,7 +124,8 @@ std::optional<std::map<std::string, FleetExplorer::Subscribers>> Exploration::Fo
     return _subscribers;
 }
 
-void Exploration::FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session)
+void Exploration::FindSubscribers(const std::vector<std::string> &messages,
+                                  const std::vector<const TransportSession *> &sessions)
 {
     std::set<std::string> nodes;
     for (const Node &node : Nodes())
@@ -136,19 +137,28 @@ void Exploration::FindSubscribers(const std::vector<std::string> &messages, cons
     {
         std::set<std::string> reading;
         std::set<std::string> types;
+        std::set<WriterId> others;  // a program may be there on several paths
         Subscribers &subscribers = all[message];
-        for (const RemoteEndpoint &endpoint : session.RemoteEndpointsOn(message))
+        for (const TransportSession *session : sessions)
         {
-            if (nodes.contains(endpoint.Node) && !endpoint.IsWriter)
+            for (const RemoteEndpoint &endpoint : session->RemoteEndpointsOn(message))
             {
-                reading.insert(endpoint.Node);
-            }
-            if (!endpoint.IsWriter)
-            {
+                if (endpoint.IsWriter)
+                {
+                    continue;
+                }
                 types.insert(endpoint.Type);
+                if (endpoint.Node.empty())
+                {
+                    others.insert(endpoint.Id);
+                }
+                else if (nodes.contains(endpoint.Node))
+                {
+                    reading.insert(endpoint.Node);
+                }
             }
-            subscribers.Others += endpoint.Node.empty() && !endpoint.IsWriter ? 1 : 0;
         }
+        subscribers.Others = others.size();
         subscribers.Nodes.assign(reading.begin(), reading.end());
         subscribers.Types.assign(types.begin(), types.end());
     }

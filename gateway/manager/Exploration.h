@@ -67,7 +67,9 @@ public:
     void SetNodes(const PeersOverPaths &peers, const ProblemTexts &problems, const PostTime &now);
     void AddText(std::uint64_t definition, std::string text);
     void AddReport(const std::string &node, NodeReports::Name name, Answer answer);
-    void FindSubscribers(const std::vector<std::string> &messages, const TransportSession &session);
+    // The sessions are those of all paths.
+    void FindSubscribers(const std::vector<std::string> &messages,
+                         const std::vector<const TransportSession *> &sessions);
     // Call at the beginning of a unit of work, and pass the result to EndTurn at its end.
     std::uint64_t BeginTurn() const { return _turnsAsked; }
     void EndTurn(std::uint64_t asked);

@@ -484,7 +484,12 @@ private:
         }
         if (requests.LookedFor)
         {
-            _exploration.FindSubscribers(*requests.LookedFor, _paths.front()->Session());
+            std::vector<const TransportSession *> sessions;
+            for (const auto &path : _paths)
+            {
+                sessions.push_back(&path->Session());
+            }
+            _exploration.FindSubscribers(*requests.LookedFor, sessions);
         }
     }
 

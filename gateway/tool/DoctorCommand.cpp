@@ -125,6 +125,7 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfSilentDomains(config, network, anyNode, CommonDomains, listened));
         Append(findings, Doctor::OfKeys(config, network, session.Heard()));
         Append(findings, Doctor::OfNodes(nodes, fleet));
+        Append(findings, Doctor::OfPaths(fleet, session.Seconds()));
         Append(findings, Doctor::OfTypes(nodes));
         Append(findings, Doctor::OfClocks(nodes, fleet));
         Append(findings, Doctor::OfLinks(nodes));

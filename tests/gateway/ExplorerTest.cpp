@@ -139,17 +139,33 @@ TEST_F(ExplorerTest, CountsReadersThatAreNoNodesAndNoToolsAmongThem)
     reader.Topic = "Pose";
     reader.Type = "Uav::Pose";
     network.Endpoints = {reader, reader};  // of no node
-    reader.Node = "rabit.host.7";          // nobody knows that node
+    network.Endpoints.back().Id = {1};
+    reader.Node = "rabit.host.7";  // nobody knows that node
     network.Endpoints.push_back(reader);
     reader.IsWriter = true;
     reader.Node.clear();
     network.Endpoints.push_back(reader);
     Exploration exploration([] {});
-    exploration.FindSubscribers({"Pose"}, Foreign::Session(network));
+    const Foreign::Session session(network);
+    exploration.FindSubscribers({"Pose"}, {&session});
     const auto found = exploration.FoundSubscribers();
     EXPECT_EQ(found->at("Pose").Others, 2u);
     EXPECT_THAT(found->at("Pose").Nodes, ::testing::IsEmpty());
     EXPECT_THAT(found->at("Pose").Types, ::testing::ElementsAre("Uav::Pose"));
+}
+
+TEST_F(ExplorerTest, FindsReadersOnEachPathAndCountsAProgramOnTwoPathsOnce)
+{
+    Foreign::Network mesh;
+    Foreign::Network modem;
+    mesh.Endpoints = {{.Id = {1}, .Topic = "Pose", .Type = "Uav::Pose"}};
+    modem.Endpoints = {{.Id = {1}, .Topic = "Pose", .Type = "Uav::Pose"},
+                       {.Id = {2}, .Topic = "Pose", .Type = "Uav::Pose"}};
+    const Foreign::Session overMesh(mesh);
+    const Foreign::Session overModem(modem);
+    Exploration exploration([] {});
+    exploration.FindSubscribers({"Pose"}, {&overMesh, &overModem});
+    EXPECT_EQ(exploration.FoundSubscribers()->at("Pose").Others, 2u);
 }
 
 TEST_F(ExplorerTest, TellsHowFarTheWallClocksOfOthersAreAhead)

@@ -28,9 +28,14 @@ Rabit::PathRule PathIn(const std::string &text)
     std::getline(words, path.Name, ':');
     std::getline(words, path.Transport, ':');
     std::getline(words, path.Interfaces.emplace_back(), ':');
-    if (std::getline(words, budget))
+    if (std::getline(words, budget, ':') && !budget.empty())
     {
         path.Radio.Budget = std::stod(budget);
+    }
+    std::string keys;
+    if (std::getline(words, keys))
+    {
+        path.Security.emplace().Keys = keys;
     }
     return path;
 }
@@ -72,7 +77,7 @@ void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
                 config.Paths.push_back(PathIn(text));
             }
         },
-        "NAME:TRANSPORT:INTERFACE[:BUDGET], the best first; in place of --interface and --budget");
+        "NAME:TRANSPORT:INTERFACE[:BUDGET[:KEYS]], the best first; in place of --interface and --budget");
     app.add_option_function<int>(
         "--lease", [&config](int seconds) { config.Lease = std::chrono::seconds(seconds); },
         "DDS lease, in seconds");

@@ -30,6 +30,13 @@ bool IsCalled(const Interface &one, const std::string &name)
            std::find(one.Addresses.begin(), one.Addresses.end(), name) != one.Addresses.end();
 }
 
+bool IsOf(const GatewayConfig &path, const Interface &one)
+{
+    return path.Interfaces.empty() ||
+           std::any_of(path.Interfaces.begin(), path.Interfaces.end(),
+                       [&one](const std::string &name) { return IsCalled(one, name); });
+}
+
 // True for the ports of a domain (OMG DDSI-RTPS 2.3, 9.6.1.1).
 bool IsOfDomain(int port, int domain)
 {
@@ -53,14 +60,14 @@ std::string RaiseAdvice()
 
 std::vector<Interface> UsedBy(const GatewayConfig &config, const std::vector<Interface> &interfaces)
 {
+    const std::vector<GatewayConfig> paths = PathConfigsOf(config);
     std::vector<Interface> used;
     std::copy_if(interfaces.begin(), interfaces.end(), std::back_inserter(used),
-                 [&config](const Interface &one)
+                 [&paths](const Interface &one)
                  {
                      const bool isNamed =
-                         config.Interfaces.empty() ||
-                         std::any_of(config.Interfaces.begin(), config.Interfaces.end(),
-                                     [&one](const std::string &name) { return IsCalled(one, name); });
+                         std::any_of(paths.begin(), paths.end(),
+                                     [&one](const GatewayConfig &path) { return IsOf(path, one); });
                      return isNamed && one.IsUp && !one.Addresses.empty();
                  });
     return used;
@@ -83,6 +90,16 @@ std::vector<Interface> UnusedBy(const GatewayConfig &config, const std::vector<I
 std::vector<Finding> OfInterfaces(const GatewayConfig &config, const std::vector<Interface> &interfaces)
 {
     std::vector<Finding> findings;
+    if (!config.Paths.empty())
+    {
+        for (GatewayConfig &path : PathConfigsOf(config))
+        {
+            path.Paths.clear();
+            std::vector<Finding> of = OfInterfaces(path, interfaces);
+            std::move(of.begin(), of.end(), std::back_inserter(findings));
+        }
+        return findings;
+    }
     for (const std::string &name : config.Interfaces)
     {
         const auto found = std::find_if(interfaces.begin(), interfaces.end(),

@@ -11,7 +11,7 @@
 namespace Rabit::Tool::Doctor
 {
 
-// Returns the interfaces that such a node uses: those named, or all that are up.
+// Returns the interfaces that such a node uses on any path: those named, or all that are up.
 std::vector<Interface> UsedBy(const GatewayConfig &config, const std::vector<Interface> &interfaces);
 // Returns the other ones that are up.
 std::vector<Interface> UnusedBy(const GatewayConfig &config, const std::vector<Interface> &interfaces);

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <iterator>
 
+#include "doctor/MachineChecks.h"
+
 namespace Rabit::Tool::Doctor
 {
 namespace
@@ -24,17 +26,27 @@ std::string Listed(const std::set<std::string> &list)
     return text + (count > most ? " and " + std::to_string(count - most) + " more" : "");
 }
 
+// Those of the interfaces that belong to a path with multicast.
+std::vector<Interface> WithMulticast(const GatewayConfig &config, const std::vector<Interface> &used)
+{
+    if (config.Paths.empty())
+    {
+        return config.Multicast ? used : std::vector<Interface>();
+    }
+    GatewayConfig with = config;
+    with.Paths.erase(std::remove_if(with.Paths.begin(), with.Paths.end(),
+                                    [](const PathRule &path) { return !path.Multicast; }),
+                     with.Paths.end());
+    return with.Paths.empty() ? std::vector<Interface>() : UsedBy(with, used);
+}
+
 }  // namespace
 
 std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<Interface> &used,
                                  const NetworkFacts &facts, const std::set<std::string> &heardBy)
 {
     std::vector<Finding> findings;
-    if (!config.Multicast)
-    {
-        return findings;
-    }
-    for (const Interface &one : used)
+    for (const Interface &one : WithMulticast(config, used))
     {
         const auto found = facts.Trials.find(one.Name);
         if (found == facts.Trials.end())

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 
 #include "NodeProblems.h"
 #include "Offers.h"
@@ -121,6 +122,40 @@ std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const
     return findings;
 }
 
+std::vector<Finding> OfPaths(const Gateway::Fleet &fleet, double listened)
+{
+    std::map<std::string, std::string> heard;  // nodes by path
+    for (const Gateway::NodeStatus &node : fleet.nodes)
+    {
+        for (const Gateway::PathToNode &path : node.paths)
+        {
+            heard[path.path] += path.state == Gateway::NodeState::LOST ? "" : " " + node.node;
+        }
+    }
+    const bool any =
+        std::any_of(heard.begin(), heard.end(), [](const auto &path) { return !path.second.empty(); });
+    std::vector<Finding> findings;
+    for (const Gateway::PathStatus &path : fleet.paths)
+    {
+        const std::string subject = "path " + path.path;
+        const bool isKnown =
+            std::any_of(fleet.problems.begin(), fleet.problems.end(),
+                        [&subject](const Gateway::Problem &problem) { return problem.subject == subject; });
+        if (!heard[path.path].empty())
+        {
+            findings.push_back({Level::Good, subject, "heard:" + heard[path.path]});
+        }
+        else if (any && !isKnown)
+        {
+            findings.push_back(
+                {Level::Problem, subject,
+                 "nobody was heard on it for " + Seconds(listened) + ", and others by other paths",
+                 "look at its radio, its `interfaces` and `peers`, and those of the others"});
+        }
+    }
+    return findings;
+}
+
 std::set<std::string> NodesThatHear(const Gateway::Fleet &fleet)
 {
     std::set<std::string> names;
@@ -226,7 +261,8 @@ std::vector<Finding> OfLosses(const std::vector<FleetSession::Node> &nodes)
         findings.push_back(
             {isMuch ? Level::Problem : Level::Note, "loss from " + node.Name,
              std::to_string(node.BeatsMissed) + " of " + std::to_string(all) + " beats did not come",
-             "rabit check, rabit bytes: whether the radio is full (docs/how_to/radio.md); else a better signal"});
+             "rabit check, rabit bytes: whether the radio is full (docs/how_to/radio.md); else a better "
+             "signal"});
     }
     if (findings.empty() && heard > 0)
     {

@@ -13,6 +13,8 @@ namespace Rabit::Tool::Doctor
 
 // Lists live nodes, and finds nodes of one name, missing announcements and problems of this program.
 std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet);
+// Finds paths of this program on which nobody was heard in that many seconds, if somebody was on another one.
+std::vector<Finding> OfPaths(const Gateway::Fleet &fleet, double listened);
 // Returns the nodes that hear this program: they echo its beats.
 std::set<std::string> NodesThatHear(const Gateway::Fleet &fleet);
 // Finds types with different definitions.

@@ -44,6 +44,17 @@ TEST(MachineChecks, AnInterfaceThatIsUpWithAnAddressIsGood)
     EXPECT_EQ(OfInterfaces({}, all).front().Text, "10.0.0.2, MTU 1500");
 }
 
+TEST(MachineChecks, TheInterfacesOfAllPathsAreUsed)
+{
+    GatewayConfig config;
+    config.Paths = {{.Name = "mesh", .Interfaces = {"wlan0"}}, {.Name = "modem", .Interfaces = {"ppp0"}}};
+    const std::vector<Interface> all{InterfaceOf("eth0", "10.0.0.2"), InterfaceOf("wlan0", "10.0.0.3")};
+    EXPECT_THAT(ProblemsOf(OfInterfaces(config, all)),
+                ::testing::ElementsAre("interface ppp0: this machine has none. name one of eth0, wlan0"));
+    ASSERT_EQ(UsedBy(config, all).size(), 1U);
+    EXPECT_EQ(UsedBy(config, all).front().Name, "wlan0");
+}
+
 TEST(MachineChecks, AnInterfaceThatIsNamedMustBeThereAndUpWithAnAddress)
 {
     GatewayConfig config;

@@ -134,6 +134,18 @@ TEST_F(NetworkChecks, WithoutMulticastNothingIsSaidOfIt)
     EXPECT_THAT(OfMulticast(config, used, facts, heardBy), IsEmpty());
 }
 
+TEST_F(NetworkChecks, OnlyPathsWithMulticastAreLookedAtForIt)
+{
+    used.front().IsUp = true;
+    used.front().Addresses = {"10.0.0.2"};
+    config.Interfaces.clear();
+    config.Paths = {{.Name = "mesh", .Interfaces = {"wlan0"}},
+                    {.Name = "modem", .Interfaces = {"ppp0"}, .Multicast = false}};
+    EXPECT_EQ(Multicast().Subject, "multicast on wlan0");
+    config.Paths.front().Multicast = false;
+    EXPECT_THAT(OfMulticast(config, used, facts, heardBy), IsEmpty());
+}
+
 TEST_F(NetworkChecks, NodesOfAnotherDomainAreAProblemIfNobodyIsInOurs)
 {
     config.Domain = 7;

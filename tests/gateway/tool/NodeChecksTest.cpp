@@ -45,6 +45,44 @@ TEST(NodeChecks, TwoNodesOfOneNameAreTold)
     EXPECT_THAT(ProblemLinesOf(OfNodes({node}, {})), ElementsAre("node uav1: two live nodes have this name"));
 }
 
+Gateway::Fleet FleetOverTwoPaths(Gateway::NodeState onModem)
+{
+    Gateway::Fleet fleet;
+    fleet.paths.resize(2);
+    fleet.paths[0].path = "mesh";
+    fleet.paths[1].path = "modem";
+    Gateway::NodeStatus &node = fleet.nodes.emplace_back();
+    node.node = "uav1";
+    for (const Gateway::PathStatus &path : fleet.paths)
+    {
+        Gateway::PathToNode &row = node.paths.emplace_back();
+        row.path = path.path;
+        row.state = path.path == "modem" ? onModem : Gateway::NodeState::UP;
+    }
+    return fleet;
+}
+
+TEST(NodeChecks, APathOnWhichNobodyIsHeardIsTold)
+{
+    EXPECT_THAT(ProblemLinesOf(OfPaths(FleetOverTwoPaths(Gateway::NodeState::UP), 6.0)), IsEmpty());
+    EXPECT_THAT(ProblemLinesOf(OfPaths(FleetOverTwoPaths(Gateway::NodeState::LOST), 6.0)),
+                ElementsAre("path modem: nobody was heard on it for 6.0 s, and others by other paths"));
+}
+
+TEST(NodeChecks, APathIsToldOnceIfTheGatewayTellsIt)
+{
+    Gateway::Fleet fleet = FleetOverTwoPaths(Gateway::NodeState::LOST);
+    fleet.problems.emplace_back().subject = "path modem";
+    EXPECT_THAT(ProblemLinesOf(OfPaths(fleet, 12.0)), IsEmpty());
+}
+
+TEST(NodeChecks, IfNobodyIsHeardAtAllNoPathIsToldForItself)
+{
+    Gateway::Fleet fleet = FleetOverTwoPaths(Gateway::NodeState::LOST);
+    fleet.nodes.clear();
+    EXPECT_THAT(ProblemLinesOf(OfPaths(fleet, 6.0)), IsEmpty());
+}
+
 TEST(NodeChecks, LinksThatDoNotGetOnAreToldByWhatTheNodesSay)
 {
     using Kind = FleetExplorer::Strain::Kind;
