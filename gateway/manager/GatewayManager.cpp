@@ -275,7 +275,8 @@ private:
             _links.SetSecondPath({.Choose =
                                       [this](std::string_view node, std::string_view queue, std::size_t bytes)
                                   {
-                                      const std::optional<std::size_t> second = _choice.Second(node, Now());
+                                      const std::optional<std::size_t> second =
+                                          _choice.Second(node, Now(), queue.empty());
                                       return second && _paths[*second]->MayTakeCopy(node, queue, bytes)
                                                  ? second
                                                  : std::nullopt;
@@ -358,13 +359,17 @@ private:
 
     void ChoosePaths(Heard &change, Duration now)
     {
-        for (const auto &[node, paths] : _links.TakeCameBy())
+        for (const auto &[node, came] : _links.TakeCameBy())
         {
             for (std::size_t path = 0; path < _paths.size(); ++path)
             {
-                if ((paths >> path & 1) != 0)
+                if ((came.First >> path & 1) != 0)
                 {
                     _choice.CameBy(node, path, now);
+                }
+                if ((came.Messages >> path & 1) != 0)
+                {
+                    _choice.MessageCameBy(node, path, now);
                 }
             }
         }

@@ -119,6 +119,16 @@ void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
     }
 }
 
+void PathChoice::MessageCameBy(const std::string &node, std::size_t path, Duration now)
+{
+    const auto found = _nodes.find(node);
+    if (_paths > 1 && found != _nodes.end() && path != found->second.Choice)
+    {
+        found->second.AnswersBy = path;
+        found->second.AnswersUntil = now + AnswersToo;
+    }
+}
+
 void PathChoice::ChooseHeard(Node &node, Duration now)
 {
     std::size_t first = _paths;
@@ -195,16 +205,20 @@ std::size_t PathChoice::Of(std::string_view node) const
     return found == _nodes.end() ? 0 : found->second.Choice;
 }
 
-std::optional<std::size_t> PathChoice::Second(std::string_view node, Duration now) const
+std::optional<std::size_t> PathChoice::Second(std::string_view node, Duration now, bool isAnswer) const
 {
     const auto found = _paths == 1 ? _nodes.end() : _nodes.find(node);
-    if (found == _nodes.end() || !found->second.Second)
+    if (found == _nodes.end())
     {
         return std::nullopt;
     }
     const Node &of = found->second;
     const bool isOver = now - of.SecondSince >= Both && of.Ways[of.Choice].CameAt > of.SecondSince;
-    return isOver ? std::nullopt : of.Second;
+    if (of.Second && !isOver)
+    {
+        return of.Second;
+    }
+    return isAnswer && of.AnswersBy != of.Choice && now < of.AnswersUntil ? of.AnswersBy : std::nullopt;
 }
 
 std::vector<std::string> PathChoice::FirstHeardOn(std::size_t path) const

@@ -31,6 +31,8 @@ namespace Rabit
 // - While queue messages for a node are unanswered for longer than usual, and while the node itself sends by
 //   another path, link frames go by a second path as well (Second), since nobody knows yet which of them
 //   arrives. That ends after some time, if the node has been heard on the chosen path since.
+// - While messages of the node come by another path than the chosen one, answers go by that path as well: the
+//   node may lack those that went by the chosen one. Answers to answers do not, so this ends with the doubt.
 //
 // A pure state machine; `now` never goes back. All calls are some comparisons if there is one path. The
 // gateway's thread only.
@@ -43,6 +45,8 @@ public:
     static constexpr Duration Both = std::chrono::seconds(2);
     // Frames that come by another path are a sign if none has come by the chosen one for this long.
     static constexpr Duration Silence = std::chrono::milliseconds(100);
+    // How long answers go by the path by which a message came.
+    static constexpr Duration AnswersToo = std::chrono::milliseconds(500);
     static constexpr Backoff::Settings Rest{.First = std::chrono::seconds(1),
                                             .Longest = std::chrono::seconds(30)};
     static constexpr Duration Sound = std::chrono::seconds(60);
@@ -65,6 +69,8 @@ public:
     bool Unanswered(const std::string &node, Duration now);
     // A new frame of the links came from the node by that path before it came by another.
     void CameBy(const std::string &node, std::size_t path, Duration now);
+    // A frame with messages of the node came by that path, whether it came by others before or not.
+    void MessageCameBy(const std::string &node, std::size_t path, Duration now);
     // The node is known on no path any more.
     void Forget(const std::string &node) { _nodes.erase(node); }
     // Lets time pass. Returns the nodes whose path has changed since the last call.
@@ -74,8 +80,8 @@ public:
 
     // The path of that node; the first one if the node is not known.
     std::size_t Of(std::string_view node) const;
-    // A path by which link frames for that node go as well.
-    std::optional<std::size_t> Second(std::string_view node, Duration now) const;
+    // A path by which link frames for that node go as well. `isAnswer`: frames without messages.
+    std::optional<std::size_t> Second(std::string_view node, Duration now, bool isAnswer = false) const;
     // The nodes that are heard well on that path and on no better one, though there are better ones.
     std::vector<std::string> FirstHeardOn(std::size_t path) const;
     // True if FirstHeardOn has changed since the last call.
@@ -103,6 +109,8 @@ private:
         std::size_t FirstHeardOn = 0;  // the first path that is UP and does not rest; else that is UP
         std::optional<std::size_t> Second;
         Duration SecondSince{0};
+        std::optional<std::size_t> AnswersBy;
+        Duration AnswersUntil{0};
     };
 
     Node &NodeOf(const std::string &node);

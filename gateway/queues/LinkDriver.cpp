@@ -174,7 +174,7 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way)
             }
             if (_ways.size() > 1)
             {
-                NoteCame(info, frame.Time, way.Number);
+                NoteCame(info, frame, way.Number);
             }
         }
         NoteRaises(now);
@@ -195,30 +195,37 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way)
     frame.Data.Items.clear();  // they point to bytes that are only borrowed
 }
 
-void LinkDriver::NoteCame(const SampleInfo &info, std::int64_t time, std::size_t path)
+void LinkDriver::NoteCame(const SampleInfo &info, const LinkFrame &frame, std::size_t path)
 {
+    const std::uint32_t bit = std::uint32_t{1} << path;
     auto node = _came.find(info.Node);
     if (node == _came.end() && _came.size() < PeerTable::MaximumPeers)
     {
         node = _came.emplace(info.Node, Came()).first;
     }
-    if (node != _came.end() && (node->second.Incarnation != info.Incarnation || time > node->second.Newest))
+    if (node == _came.end())
     {
-        node->second.Incarnation = info.Incarnation;
-        node->second.Newest = time;
-        node->second.By |= std::uint32_t{1} << path;
+        return;
     }
+    Came &came = node->second;
+    if (came.Incarnation != info.Incarnation || frame.Time > came.Newest)
+    {
+        came.Incarnation = info.Incarnation;
+        came.Newest = frame.Time;
+        came.By.First |= bit;
+    }
+    came.By.Messages |= frame.HasData ? bit : 0;
 }
 
-std::map<std::string, std::uint32_t> LinkDriver::TakeCameBy()
+std::map<std::string, LinkDriver::CameBy> LinkDriver::TakeCameBy()
 {
     const std::lock_guard lock(_mutex);
-    std::map<std::string, std::uint32_t> cameBy;
+    std::map<std::string, CameBy> cameBy;
     for (auto &[node, came] : _came)
     {
-        if (came.By != 0)
+        if ((came.By.First | came.By.Messages) != 0)
         {
-            cameBy.emplace(node, std::exchange(came.By, 0));
+            cameBy.emplace(node, std::exchange(came.By, {}));
         }
     }
     return cameBy;

@@ -99,9 +99,15 @@ public:
         std::size_t path, Duration now,
         const std::function<void(const std::string &node, Duration delay, Duration arrivedAt)> &take);
     void VisitPaths(const std::function<void(std::string_view node, const LinkPathState &)> &visit) const;
-    // With several paths. The nodes of which new frames have come since the last call, and the paths by which
-    // they came first (bit i: the i-th); and the nodes of which an answer is missing for longer than usual.
-    std::map<std::string, std::uint32_t> TakeCameBy();
+    // With several paths. The nodes of which frames have come since the last call, with the paths (bit i: the
+    // i-th) by which new ones came first, and by which any with messages came; and the nodes of which an
+    // answer is missing for longer than usual.
+    struct CameBy
+    {
+        std::uint32_t First = 0;
+        std::uint32_t Messages = 0;
+    };
+    std::map<std::string, CameBy> TakeCameBy();
     std::vector<std::string> Unanswered() const;
     // Frames for that node go by a second path, too: the unanswered ones are sent again at once.
     void ProbeNow(const std::string &node);
@@ -200,7 +206,7 @@ private:
     // threads that may take that long; every call of the links that may complete a message comes before one.
     void DecodeLarge(News &news);
     // With the mutex: notes the path by which a frame has come.
-    void NoteCame(const SampleInfo &info, std::int64_t time, std::size_t path);
+    void NoteCame(const SampleInfo &info, const LinkFrame &frame, std::size_t path);
     // With the mutex: notes that another live node must have this name, if this one's incarnation was raised
     // too often.
     void NoteRaises(LinkTime now);
@@ -246,7 +252,7 @@ private:
     {
         std::uint64_t Incarnation = 0;
         std::int64_t Newest = 0;
-        std::uint32_t By = 0;
+        CameBy By;
     };
     std::map<std::string, Came, std::less<>> _came;
 

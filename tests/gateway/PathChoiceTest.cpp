@@ -228,6 +228,19 @@ TEST_F(PathChoiceTest, WhoSendsByAnotherPathIsAnsweredByBoth)
     EXPECT_EQ(choice.Second("uav1", 5s), Modem);
 }
 
+TEST_F(PathChoiceTest, MessagesByAnotherPathAreAnsweredByThatPathTooForAWhile)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    choice.CameBy("uav1", Mesh, 5s);
+    choice.MessageCameBy("uav1", Mesh, 5s);
+    EXPECT_EQ(choice.Second("uav1", 5s, true), std::nullopt);
+    choice.MessageCameBy("uav1", Modem, 5s);
+    EXPECT_EQ(choice.Second("uav1", 5s, true), Modem);
+    EXPECT_EQ(choice.Second("uav1", 5s, false), std::nullopt) << "messages need no second path";
+    EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::AnswersToo, true), std::nullopt);
+}
+
 TEST_F(PathChoiceTest, APathCarriesIfANodeIsReachedByIt)
 {
     EXPECT_TRUE(choice.CarriesAny(Mesh)) << "before anybody is known";

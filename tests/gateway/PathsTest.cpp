@@ -284,6 +284,35 @@ TEST_F(PathsTest, IfOnlyTheWayOutIsDeadCommandsComeByTheOtherPath)
     EXPECT_LE(longestGap, 250ms);
 }
 
+// The commands come, and their acknowledgements are lost.
+TEST_F(PathsTest, IfOnlyTheWayBackIsDeadCommandsGoOn)
+{
+    AddBoth();
+    RunFor(3s);
+    Command(1s);
+    mesh.SetFaults("uav1", "ground", {.Cut = true});
+    Command(5s);
+    RunFor(1s);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(longestGap, 250ms);
+}
+
+TEST_F(PathsTest, AnswersByASecondPathEndSoonAfterTheDoubt)
+{
+    AddBoth();
+    RunFor(3s);
+    Command(1s);
+    mesh.SetFaults("uav1", "ground", {.Cut = true});
+    Command(500ms);
+    mesh.SetFaults("uav1", "ground", {.Delay = 1ms});
+    Command(5s);
+    const std::uint64_t before = modem.Sent("uav1").Bytes + modem.Sent("ground").Bytes;
+    Command(5s);
+    RunFor(500ms);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(modem.Sent("uav1").Bytes + modem.Sent("ground").Bytes - before, 6000U);  // beats
+}
+
 TEST_F(PathsTest, IfOnlyTheWayToTheGroundIsDeadThePoseComesByTheOtherPath)
 {
     AddBoth();
