@@ -200,6 +200,26 @@ private:
             CheckRadio(path.Radio, place);
             CheckSecurity(path.Security, place);
         }
+        CheckInterfacesOfPaths();
+    }
+
+    // Two paths on one network would hear each other, and send all twice.
+    void CheckInterfacesOfPaths() const
+    {
+        std::map<std::string, int> seen;
+        for (const PathRule &path : _config.Paths)
+        {
+            if (path.Interfaces.empty() && _config.Paths.size() > 1)
+            {
+                Fail(path.Line,
+                     "path `" + path.Name +
+                         "` needs `interfaces`: without them it uses those of the other paths, too");
+            }
+            for (const std::string &interface : path.Interfaces)
+            {
+                CheckOnce(seen, interface, "interfaces", path.Line);
+            }
+        }
     }
 
     void CheckRecord() const
@@ -577,9 +597,10 @@ void ValidateTransportName(const GatewayConfig &config, const std::vector<std::s
             continue;
         }
         const auto line = path.Lines.find("transport");
-        throw ConfigError(config.File, line == path.Lines.end() ? 0 : line->second,
-                          (isIn(known, name) ? "this build is without the transport `" : "unknown transport `") +
-                              name + "`" + NearestWordHint(name, available));
+        throw ConfigError(
+            config.File, line == path.Lines.end() ? 0 : line->second,
+            (isIn(known, name) ? "this build is without the transport `" : "unknown transport `") + name +
+                "`" + NearestWordHint(name, available));
     }
 }
 

@@ -312,6 +312,15 @@ TEST_F(GatewayConfigTest, MistakesInPathsNameTheirLine)
               "node.yaml:3: `m/n` is no path name; expected 1 to 64 of A-Z a-z 0-9 _ . -");
 }
 
+TEST_F(GatewayConfigTest, TwoPathsOfOneNetworkAreRefused)
+{
+    EXPECT_EQ(
+        ErrorOf("node: a\npaths:\n  - {name: m, interfaces: [eth0]}\n  - {name: n, interfaces: [eth0]}\n"),
+        "node.yaml:4: `eth0` stands twice under `interfaces` (first in line 3)");
+    EXPECT_EQ(ErrorOf("node: a\npaths:\n  - {name: m, interfaces: [eth0]}\n  - {name: n}\n"),
+              "node.yaml:4: path `n` needs `interfaces`: without them it uses those of the other paths, too");
+}
+
 TEST_F(GatewayConfigTest, AParameterOfAnotherKindOrRangeIsNamedWithItsLine)
 {
     const GatewayConfig config =

@@ -26,8 +26,8 @@ constexpr Duration CommandPeriod = 20ms;
 
 GatewayConfig OverBoth(GatewayConfig config, std::optional<double> modemBudget = {})
 {
-    config.Paths.push_back({.Name = "mesh"});
-    config.Paths.push_back({.Name = "modem", .Radio = {.Budget = modemBudget}});
+    config.Paths.push_back({.Name = "mesh", .Interfaces = {"wlan0"}});
+    config.Paths.push_back({.Name = "modem", .Interfaces = {"ppp0"}, .Radio = {.Budget = modemBudget}});
     return config;
 }
 
