@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -264,12 +265,17 @@ private:
                               {
                                   return QuestionQueue::Outcome::Later;
                               }
-                              return _outbox.Send(node, AnswerTo(node, question))
-                                         ? QuestionQueue::Outcome::Answered
-                                         : QuestionQueue::Outcome::Refused;
+                              std::optional<Answer> answer = AnswerTo(node, question);
+                              if (!answer)
+                              {
+                                  return QuestionQueue::Outcome::Later;
+                              }
+                              return _outbox.Send(node, *answer) ? QuestionQueue::Outcome::Answered
+                                                                 : QuestionQueue::Outcome::Refused;
                           });
     }
-    Answer AnswerTo(const std::string &node, const Question &question)
+    // Empty: not yet.
+    std::optional<Answer> AnswerTo(const std::string &node, const Question &question)
     {
         if (question.kind == Kind::FACTS || question.kind == Kind::PART)
         {

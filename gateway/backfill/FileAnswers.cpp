@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <utility>
 
 #include "backfill/AnswerTo.h"
-#include "backfill/FileHash.h"
 
 namespace Rabit::Backfill
 {
@@ -42,7 +42,7 @@ bool IsPlainName(const std::string &name)
 
 }  // namespace
 
-Answer FileAnswers::Of(const std::string &node, const Question &question)
+std::optional<Answer> FileAnswers::Of(const std::string &node, const Question &question)
 {
     Answer answer = AnswerTo(question);
     answer.from = question.from;
@@ -70,8 +70,7 @@ Answer FileAnswers::Of(const std::string &node, const Question &question)
     }
     if (question.kind == Kind::FACTS)
     {
-        AnswerFacts(file.Number(), question, answer);
-        return answer;
+        return AnswerFacts(file.Number(), question, answer) ? std::optional(std::move(answer)) : std::nullopt;
     }
     const auto size = static_cast<std::uint64_t>(status.st_size);
     answer.size = size;
@@ -99,7 +98,8 @@ Answer FileAnswers::Of(const std::string &node, const Question &question)
     return answer;
 }
 
-void FileAnswers::AnswerFacts(int file, const Question &question, Answer &answer)
+// A file that grows meanwhile is hashed up to the size that it had at the beginning.
+bool FileAnswers::AnswerFacts(int file, const Question &question, Answer &answer)
 {
     struct stat status
     {
@@ -107,7 +107,7 @@ void FileAnswers::AnswerFacts(int file, const Question &question, Answer &answer
     answer.result = Result::FAILED;
     if (::fstat(file, &status) != 0)
     {
-        return;
+        return true;
     }
     if (_facts.size() >= MostFacts && !_facts.contains(question.name))
     {
@@ -116,18 +116,26 @@ void FileAnswers::AnswerFacts(int file, const Question &question, Answer &answer
     Facts &facts = _facts[question.name];
     const auto size = static_cast<std::uint64_t>(status.st_size);
     const std::int64_t changedAt = status.st_mtim.tv_sec * 1'000'000'000 + status.st_mtim.tv_nsec;
-    if (facts.Hash.empty() || facts.Size != size || facts.ChangedAt != changedAt)
+    if (!facts.Work && (facts.Hash.empty() || facts.Size != size || facts.ChangedAt != changedAt))
     {
-        auto hash = HashOf(file, size);
-        if (!hash)
+        facts = {size, changedAt, {}, std::make_unique<FileHash>(size)};
+    }
+    if (facts.Work)
+    {
+        if (facts.Work->Advance(file, HashedAtOnce) && !facts.Work->IsDone())
         {
-            return;
+            return false;
         }
-        facts = {size, changedAt, std::move(*hash)};
+        facts.Hash = std::exchange(facts.Work, nullptr)->Take();
+        if (facts.Hash.empty())
+        {
+            return true;
+        }
     }
     answer.result = Result::OK;
     answer.size = facts.Size;
     answer.bytes = facts.Hash;
+    return true;
 }
 
 }  // namespace Rabit::Backfill

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "backfill.idl.h"
+#include "backfill/FileHash.h"
 
 namespace Rabit::Backfill
 {
@@ -20,6 +22,9 @@ class FileAnswers
 public:
     // Bytes in one answer.
     static constexpr std::uint64_t LargestPart = 64U << 10;
+    // Bytes of a file that one call hashes, so that a large file holds up nobody: a tenth of a second of a
+    // slow processor.
+    static constexpr std::uint64_t HashedAtOnce = 16U << 20;
 
     using MayFetch = std::function<bool(const std::string &node)>;
     // Without a folder nothing is allowed.
@@ -28,8 +33,8 @@ public:
     {
     }
 
-    // The question must be of the kind FACTS or PART.
-    Answer Of(const std::string &node, const Question &question);
+    // The question must be of the kind FACTS or PART. Empty: the file is being hashed; ask again, soon.
+    std::optional<Answer> Of(const std::string &node, const Question &question);
 
 private:
     struct Facts
@@ -37,11 +42,13 @@ private:
         std::uint64_t Size = 0;
         std::int64_t ChangedAt = 0;
         std::vector<std::uint8_t> Hash;
+        std::unique_ptr<FileHash> Work;  // until the hash is there
     };
     // Hashes that are remembered: a large file takes seconds.
     static constexpr std::size_t MostFacts = 64;
 
-    void AnswerFacts(int file, const Question &question, Answer &answer);
+    // Returns false while the file is being hashed.
+    bool AnswerFacts(int file, const Question &question, Answer &answer);
 
     const std::string _folder;
     const MayFetch _mayFetch;

@@ -7,42 +7,62 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <memory>
 
 namespace Rabit::Backfill
 {
 
-std::optional<std::vector<std::uint8_t>> HashOf(int file, std::uint64_t size)
+void FileHash::Free::operator()(EVP_MD_CTX *context) const
 {
-    const std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX *)> context(EVP_MD_CTX_new(), EVP_MD_CTX_free);
-    if (!context || EVP_DigestInit_ex(context.get(), EVP_sha256(), nullptr) != 1)
+    EVP_MD_CTX_free(context);
+}
+
+FileHash::FileHash(std::uint64_t size) : _size(size), _context(EVP_MD_CTX_new())
+{
+    if (_context && EVP_DigestInit_ex(_context.get(), EVP_sha256(), nullptr) != 1)
     {
-        return std::nullopt;
+        _context.reset();
     }
+}
+
+bool FileHash::Advance(int file, std::uint64_t most)
+{
     std::vector<std::uint8_t> room(1U << 20);
-    for (std::uint64_t offset = 0; offset < size;)
+    const std::uint64_t end = _offset + std::min(most, _size - _offset);
+    while (_context && _offset < end)
     {
-        const std::size_t most =
-            static_cast<std::size_t>(std::min<std::uint64_t>(room.size(), size - offset));
-        const ssize_t read = ::pread(file, room.data(), most, static_cast<off_t>(offset));
+        const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(room.size(), end - _offset));
+        const ssize_t read = ::pread(file, room.data(), wanted, static_cast<off_t>(_offset));
         if (read < 0 && errno == EINTR)
         {
             continue;
         }
-        if (read <= 0 || EVP_DigestUpdate(context.get(), room.data(), static_cast<std::size_t>(read)) != 1)
+        if (read <= 0 || EVP_DigestUpdate(_context.get(), room.data(), static_cast<std::size_t>(read)) != 1)
         {
-            return std::nullopt;
+            _context.reset();
+            break;
         }
-        offset += static_cast<std::uint64_t>(read);
+        _offset += static_cast<std::uint64_t>(read);
     }
+    return _context != nullptr;
+}
+
+std::vector<std::uint8_t> FileHash::Take()
+{
     std::vector<std::uint8_t> hash(EVP_MAX_MD_SIZE);
     unsigned length = 0;
-    if (EVP_DigestFinal_ex(context.get(), hash.data(), &length) != 1)
+    if (!IsDone() || !_context || EVP_DigestFinal_ex(_context.get(), hash.data(), &length) != 1)
     {
-        return std::nullopt;
+        length = 0;
     }
     hash.resize(length);
     return hash;
+}
+
+std::optional<std::vector<std::uint8_t>> HashOf(int file, std::uint64_t size)
+{
+    FileHash hash(size);
+    std::vector<std::uint8_t> bytes = hash.Advance(file, size) ? hash.Take() : std::vector<std::uint8_t>();
+    return bytes.empty() ? std::nullopt : std::optional(std::move(bytes));
 }
 
 }  // namespace Rabit::Backfill

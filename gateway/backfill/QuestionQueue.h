@@ -31,7 +31,7 @@ public:
     enum class Outcome
     {
         Answered,
-        Later,    // the node has enough answers under way
+        Later,    // the node has enough answers under way, or the answer takes longer
         Refused,  // the answer could not be sent
     };
 

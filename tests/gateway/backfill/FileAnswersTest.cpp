@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -41,8 +43,16 @@ protected:
         question.from = from;
         question.to = to;
         question.number = 77;
-        return shown->Of(node, question);
+        ++calls;
+        std::optional<Answer> answer;
+        while (!(answer = shown->Of(node, question)))
+        {
+            ++calls;
+        }
+        return *answer;
     }
+
+    int calls = 0;
 };
 
 TEST_F(FileAnswersTest, SizeAndHashAreTold)
@@ -61,6 +71,37 @@ TEST_F(FileAnswersTest, AChangedFileHasAnotherHash)
     const auto before = Ask("a.txt").bytes;
     std::ofstream(folder / "shown" / "a.txt", std::ios::app) << " world";
     EXPECT_NE(Ask("a.txt").bytes, before);
+}
+
+TEST_F(FileAnswersTest, ALargeFileIsHashedInPieces)
+{
+    const std::filesystem::path large = folder / "shown" / "large";
+    std::ofstream(large) << "x";
+    std::filesystem::resize_file(large, 2 * FileAnswers::HashedAtOnce + 1);
+    const Answer facts = Ask("large");
+    EXPECT_EQ(calls, 3);
+    EXPECT_EQ(facts.size, 2 * FileAnswers::HashedAtOnce + 1);
+    EXPECT_EQ(Ask("large").bytes, facts.bytes);
+    EXPECT_EQ(calls, 4) << "the hash is remembered";
+    const int file = ::open(large.c_str(), O_RDONLY);
+    EXPECT_EQ(HashOf(file, facts.size), facts.bytes);
+    ::close(file);
+}
+
+TEST_F(FileAnswersTest, AFileThatGrowsWhileItIsHashedIsToldAsItWas)
+{
+    const std::filesystem::path large = folder / "shown" / "large";
+    std::ofstream(large) << "x";
+    std::filesystem::resize_file(large, 2 * FileAnswers::HashedAtOnce);
+    Question question;
+    question.kind = Kind::FACTS;
+    question.name = "large";
+    EXPECT_FALSE(shown->Of("ground", question));
+    std::filesystem::resize_file(large, 3 * FileAnswers::HashedAtOnce);
+    const std::optional<Answer> answer = shown->Of("ground", question);
+    ASSERT_TRUE(answer);
+    EXPECT_EQ(answer->size, 2 * FileAnswers::HashedAtOnce);
+    EXPECT_EQ(Ask("large").size, 3 * FileAnswers::HashedAtOnce);
 }
 
 TEST_F(FileAnswersTest, PartsAreSentAsFarAsTheFileGoes)
