@@ -424,6 +424,17 @@ private:
     {
         _isOpen = true;
         _openedAt = Now();
+        // Cyclone DDS checks keys only in the first session of a process.
+        for (const bool withKeys : {true, false})
+        {
+            for (const auto &path : _paths)
+            {
+                if (path->HasKeys() == withKeys)
+                {
+                    path->Join();
+                }
+            }
+        }
         for (const auto &path : _paths)
         {
             path->Open();

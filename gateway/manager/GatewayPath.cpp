@@ -39,12 +39,16 @@ GatewayPath::GatewayPath(GatewayConfig config, std::shared_ptr<Rabit::Transport>
 {
 }
 
-void GatewayPath::Open()
+void GatewayPath::Join()
 {
     TransportSettings settings = TransportSettingsOf(_config, _shared.Incarnation);
     _keysEndAt = AddSecurity(_config, _transport->Name(), settings);
     _session = _transport->Open(settings, [this](const PeerEvent &event) { _presence.OnPeer(event); });
     _air.TakeTurns(*_session, _shared.WakeUp);
+}
+
+void GatewayPath::Open()
+{
     _openedAt = _shared.Workspace.GetClock().Monotonic();
     if (_config.Tool)
     {

@@ -65,6 +65,9 @@ public:
                 const Shared &shared);
 
     // Joins the network. Throws TransportError, and ConfigError for the keys.
+    void Join();
+    bool HasKeys() const { return _config.Security.has_value(); }
+    // Once all paths have joined, in their order. Throws TransportError.
     void Open();
     // Once all paths are open.
     void Begin();

@@ -2,7 +2,7 @@
 """Two nodes with two networks each, a mesh and a slow modem. The mesh is cut and comes back, again and again, while one
 node sends 50 commands a second: each arrives once, in order, and the gap at the receiver is short.
 
-Usage: paths_test.py LEDGER_NODE TRANSPORTS [--cuts N] [--modem KBIT] [--budget B/s]
+Usage: paths_test.py LEDGER_NODE TRANSPORTS [--cuts N] [--modem KBIT] [--budget B/s] [--keys RABIT]
 TRANSPORTS: that of the mesh and that of the modem, with a comma between; one: both have it. Prints the gap at each cut, and how many bytes each
 network carried while both were there. Exit code 77: this machine allows no namespaces."""
 
@@ -63,6 +63,17 @@ def wait_for(what, limit_s):
         time.sleep(0.05)
 
 
+def make_keys(rabit, folder, transport, nodes):
+    """Returns the folder of each node's keys."""
+    field.run(rabit, "keys", "init", f"{folder}/keys")
+    for node in nodes:
+        config = pathlib.Path(folder, f"{node}.yaml")
+        config.write_text(f"node: {node}\ndomain: 0\ntransport: {transport}\n"
+                          "accept: [{queue: Notes, types: [Ledger::Note]}]\n")
+        field.run(rabit, "keys", "add", node, "--keys", f"{folder}/keys", "--config", config)
+    return {node: f"{folder}/keys/{node}" for node in nodes}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("ledger_node")
@@ -70,14 +81,17 @@ def main():
     parser.add_argument("--cuts", type=int, default=3)
     parser.add_argument("--modem", type=float, default=1000, help="kbit/s")
     parser.add_argument("--budget", type=int, help="bytes a second on the modem")
+    parser.add_argument("--keys", metavar="RABIT", help="the modem alone has keys, which this program makes")
     options = parser.parse_args()
     mesh, modem = (options.transports.split(",") * 2)[:2]
     seconds = UP_S + options.cuts * (CUT_S + UP_S)
     count = RATE * seconds
     with TwoNetworks(["ground", "uav1"], options.modem) as ground:
+        keys = make_keys(options.keys, ground.folder, modem, ground.nodes) if options.keys else {}
         for node in ground.nodes:
             ground.start(node, [options.ledger_node, "--node", node, "--ledger", f"{ground.folder}/{node}.ledger",
-                                "--path", f"mesh:{mesh}:eth0", "--path", f"modem:{modem}:eth1" + (f":{options.budget}" if options.budget else ""),
+                                "--path", f"mesh:{mesh}:eth0", "--path",
+                                f"modem:{modem}:eth1:{options.budget or ''}:{keys.get(node, '')}".rstrip(":"),
                                 *(["--to", "uav1", "--count", count, "--rate", RATE, "--capacity", 5000,
                                    "--payload", 50] if node == "ground" else [])])
         wait_for(lambda: arrivals(ground), 30)
