@@ -16,6 +16,8 @@ missing Debian packages and builds what is missing first.
   --web PORT         port of the web page on this machine, 1 to 65535 (default: the first free one from 8080 on), or `off`
   --transport NAME   DDS implementation: fastdds (default if it is built), cyclonedds, or mixed: uav1, uav3, ... and the ground station
                      on fastdds, uav2, uav4, ... on cyclonedds
+  --radios two       each aircraft has two emulated radios, a fast mesh and a slow modem; needs root and iproute2. The
+                     script prints how to cut the mesh
   --secure           with fresh keys, a folder for each node: strangers are neither heard nor answered
   --domain N         DDS domain, 0 to 232, with --secure to 230, that nobody on this machine uses (default: one
                      that is free)
@@ -56,6 +58,7 @@ bin=
 web=
 record=
 secure=
+radios=
 while [ $# -gt 0 ]; do
     option=$1
     case $option in
@@ -72,7 +75,7 @@ while [ $# -gt 0 ]; do
         set -- "${option%%=*}" "${option#*=}" "${@:2}"
         continue
         ;;
-    --uavs | --seconds | --track | --transport | --domain | --web | --record | --bin)
+    --uavs | --seconds | --track | --transport | --domain | --web | --record | --radios | --bin)
         [ $# -ge 2 ] || fail_usage "$option needs a value"
         value=$2
         shift 2
@@ -104,11 +107,20 @@ while [ $# -gt 0 ]; do
         web=$value
         ;;
     --record) record=$value ;;
+    --radios)
+        [ "$value" = two ] || fail_usage "--radios must be two, not '$value'"
+        radios=$value
+        ;;
     --bin) bin=$value ;;
     esac
 done
 [ ${#tracks[@]} -le "$uavs" ] ||
     fail_usage "${#tracks[@]} tracks are too many for --uavs $uavs"
+# Cyclone DDS checks keys in one session of a process alone.
+[ -z "$radios" ] || [ -z "$secure" ] || [ "${transport:-fastdds}" = fastdds ] ||
+    fail_usage "--radios two with --secure needs --transport fastdds"
+[ -z "$radios" ] || { [ "$(id -u)" -eq 0 ] && command -v ip tc >/dev/null; } ||
+    fail_usage "--radios two needs root and iproute2"
 for track in "${tracks[@]}"; do
     [ -f "$track" ] && [ -r "$track" ] || fail_usage "--track: there is no file '$track' that can be read"
 done
@@ -161,29 +173,38 @@ if [ -z "$domain" ]; then
     done
 fi
 
-# A recording is one more section in each configuration.
+# Recordings and radios are sections of each configuration.
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
 if [ -n "$record" ]; then
     mkdir -p -- "$record" || exit 2
     record=$(cd -- "$record" && pwd) || exit 2
 fi
-config_of() { # config_of FILE [LINE]: prints the configuration to use; the line stands in its section `record`
+config_of() { # config_of FILE MESH MODEM [LINE]: prints the configuration to use; the line stands in its section `record`
     local copy
     copy=$logs/$(basename "$1")
-    if [ -z "$record" ]; then
+    if [ -z "$record$radios" ]; then
         echo "$1"
         return
     fi
     {
-        cat "$1"
-        printf 'record:\n  folder: '"'%s'"'\n  free: 100MB\n%s' "${record//\'/\'\'}" "${2:+  $2$'\n'}"
+        if [ -n "$radios" ]; then
+            grep -v '^interfaces:' "$1"
+            radios_paths "$2" "$3"
+        else
+            cat "$1"
+        fi
+        [ -z "$record" ] ||
+            printf 'record:\n  folder: '"'%s'"'\n  free: 100MB\n%s' "${record//\'/\'\'}" "${4:+  $4$'\n'}"
     } >"$copy"
     echo "$copy"
 }
-uav_config=$(config_of "$here/swarm/uav.yaml" 'steps: [MissionControl, HealthMonitor]')
-vision_config=$(config_of "$here/swarm/vision.yaml")
-ground_config=$(config_of "$here/ground_station/ground.yaml")
+# shellcheck source=examples/two_radios.sh
+. "$here/two_radios.sh"
+radios_name "$domain"
+uav_config=$(config_of "$here/swarm/uav.yaml" mesh0 modem0 'steps: [MissionControl, HealthMonitor]')
+vision_config=$(config_of "$here/swarm/vision.yaml" mesh0 modem0)
+ground_config=$(config_of "$here/ground_station/ground.yaml" "$radios_mesh" "$radios_modem")
 
 # Everything is checked before anything is started.
 transport_of() { # transport_of K: prints the transport of aircraft K; the ground station is number 1
@@ -229,6 +250,14 @@ keys_argument ground
 ground_arguments=("${arguments[@]}")
 make_keys ground "$(transport_of 1)" --config "$ground_config"
 make_keys laptop "$(transport_of 1)" --tool
+among=()
+among_radios() { # among_radios K: sets the array `among`, the words before a command that runs where aircraft K has its radios
+    [ -z "$radios" ] || among=(ip netns exec "$(radios_inside "$1")")
+}
+if [ -n "$radios" ]; then
+    trap 'rm -rf "$logs" ${keys:+"$keys"}; radios_remove 2>/dev/null' EXIT
+    radios_make "$uavs" || fail_usage "--radios two: no such networks can be made here"
+fi
 [ -z "$seconds" ] || ground_arguments+=(--seconds "$seconds")
 [ "$web" = off ] || ground_arguments+=(--web "$web")
 [ $((uavs - ${#tracks[@]})) -lt 2 ] || ground_arguments+=(--expect-target)
@@ -237,10 +266,11 @@ for ((k = 1; k <= uavs; k++)); do
     [ "$k" -le ${#tracks[@]} ] || ground_arguments+=(--search "uav$k")
     make_keys "uav$k" "$(transport_of "$k")" --config "$uav_config"
     make_keys "uav$k.vision" "$(transport_of "$k")" --config "$vision_config"
+    among_radios "$k"
     uav_arguments "$k"
-    "$bin/uav" "${arguments[@]}" --check || exit $?
+    "${among[@]}" "$bin/uav" "${arguments[@]}" --check || exit $?
     vision_arguments "$k"
-    "$bin/vision" "${arguments[@]}" --check || exit $?
+    "${among[@]}" "$bin/vision" "${arguments[@]}" --check || exit $?
 done
 "$bin/ground" "${ground_arguments[@]}" --check || exit $?
 
@@ -297,6 +327,7 @@ on_exit() {
     trap - EXIT
     trap '' INT TERM HUP
     end_processes ${ground_pid:+"$ground_pid"} "${pids[@]}"
+    [ -z "$radios" ] || radios_remove 2>/dev/null
     rm -rf "$logs" ${keys:+"$keys"}
 }
 
@@ -317,13 +348,14 @@ trap on_interrupt INT TERM HUP
 # A session of its own for each process keeps the terminal's Ctrl-C from all but this script, which ends them in the
 # right order. The parent-death signal ends them even if this script is killed.
 started=
-start() { # start NAME PROGRAM: with the array `arguments`
-    setsid setpriv --pdeathsig TERM "$bin/$2" "${arguments[@]}" </dev/null >"$logs/$1" 2>&1 &
+start() { # start NAME PROGRAM: with the arrays `arguments` and `among`
+    setsid setpriv --pdeathsig TERM "${among[@]}" "$bin/$2" "${arguments[@]}" </dev/null >"$logs/$1" 2>&1 &
     names+=("$1")
     pids+=($!)
     started+="${started:+, }$1 ($!)"
 }
 for ((k = 1; k <= uavs; k++)); do
+    among_radios "$k"
     uav_arguments "$k"
     start "uav$k" uav
     vision_arguments "$k"
@@ -332,6 +364,8 @@ done
 setsid setpriv --pdeathsig TERM "$bin/ground" "${ground_arguments[@]}" </dev/null &
 ground_pid=$!
 echo "DDS domain $domain. Processes: $started, ground ($ground_pid). Ctrl-C ends them." >&2
+[ -z "$radios" ] || echo "Radios: the mesh is $radios_mesh, the modem $radios_modem. To cut the mesh: ip link set $radios_mesh down;" \
+    "to mend it: ip link set $radios_mesh up" >&2
 [ -z "$keys" ] || echo "Strangers are kept out. To look at it: $bin/rabit nodes --keys $keys/fleet/laptop --interface lo" >&2
 
 # From here on the shell's own notices, for instance of an aircraft that was killed, would spoil the table.

@@ -177,8 +177,23 @@ refuses_a_domain_in_use)
     end_demo
     expect_no_processes_left
     ;;
+outlives_the_cut_of_the_mesh)
+    ip netns list >/dev/null 2>&1 || exit 77
+    start_demo --radios two --uavs 1 --seconds 30 --web off
+    for ((tries = 0; tries < 600; tries++)); do
+        ! grep -q 'no such networks can be made\|needs root' "$work/err" || exit 77
+        ! grep -q 'uav1   UP ' "$work/out" || break
+        sleep 0.1
+    done
+    mesh=$(grep -o 'mesh is mesh[0-9]*' "$work/err" | grep -o 'mesh[0-9]*$')
+    ip link set "$mesh" down
+    end_demo
+    expect_status 0
+    expect_no_processes_left
+    ! ip netns list | grep -q "rabit_${mesh}_" || fail "a namespace is left"
+    ;;
 refuses_bad_options)
-    for arguments in '--uavs 0' '--uavs 21' '--uavs x' '--seconds 0' '--domain 233' '--transport carrier' '--web 0' --oops; do
+    for arguments in '--uavs 0' '--uavs 21' '--uavs x' '--seconds 0' '--domain 233' '--transport carrier' '--web 0' '--radios three' --oops; do
         # shellcheck disable=SC2086 # two words
         demo $arguments
         expect_status 2
