@@ -218,6 +218,21 @@ TEST_F(ReplayTest, TheBudgetOfTheConfigurationHoldsUnlessAnotherIsGiven)
     EXPECT_EQ(replaced({.Budget = 0.0}), 0);
 }
 
+TEST_F(ReplayTest, OfSeveralPathsTheFirstIsFlown)
+{
+    Pair(5,
+         "node: uav\npaths: [{name: mesh, interfaces: [mesh0], radio: {budget: 1500B/s}}, {name: modem}]\n"
+         "security: {keys: /nowhere}\nrecord: {folder: /nowhere}\n")
+        .Save(Path());
+    const Recording recording({Path()});
+    const auto uav = std::find_if(recording.Lives().begin(), recording.Lives().end(),
+                                  [](const RecordedLife &life) { return life.Node == "uav"; });
+    EXPECT_EQ(uav->Config.Radio.Budget, 1500);
+    EXPECT_TRUE(uav->Config.Paths.empty() && uav->Config.Interfaces.empty());
+    EXPECT_FALSE(uav->Config.Security || uav->Config.Record);
+    EXPECT_FALSE(Ages(Fly()).empty());
+}
+
 TEST_F(ReplayTest, ANodeThatEndedIsLostAndIsBackInItsNextLife)
 {
     Pair recording(40);
