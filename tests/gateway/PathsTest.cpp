@@ -485,6 +485,49 @@ TEST_P(PathsUnderFaults, EachCommandComesOnceAndInOrder)
 
 INSTANTIATE_TEST_SUITE_P(Seeds, PathsUnderFaults, ::testing::Range(0, 200));
 
+// The mesh comes and goes, in both directions or in one, with times of its own for each seed.
+class PathsThatFlap : public PathsUnderFaults
+{
+};
+
+TEST_P(PathsThatFlap, CommandsComeOnceAndInOrderAndThePoseIsSeldomOld)
+{
+    AddBoth();
+    RunFor(3s);
+    const auto anyTime = [this] { return std::chrono::milliseconds(300 + 20 * (chance() % 110)); };
+    const Duration gone = anyTime();
+    const Duration there = anyTime();
+    const bool bothWays = GetParam() % 2 == 0;
+    int looks = 0;
+    int old = 0;
+    bool cut = false;
+    for (const Duration begin = passed; passed - begin < 60s;)
+    {
+        cut = !cut;
+        const SimulatedFaults faults{.Delay = 1ms, .Cut = cut};
+        mesh.SetFaults("uav1", "ground", faults);
+        if (bothWays)
+        {
+            mesh.SetFaults("ground", "uav1", faults);
+        }
+        for (const Duration from = passed; passed - from < (cut ? gone : there);)
+        {
+            Command(CommandPeriod);
+            ++looks;
+            old += AgeAtGround() > 0.25 ? 1 : 0;
+        }
+    }
+    Cut(mesh, false);
+    RunFor(2s);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(longestGap, 250ms);
+    // A path that is gone for a fifth of the time stays in use for long.
+    EXPECT_LE(old, looks / 5) << "gone for " << gone.count() / 1000000 << " ms, there for "
+                              << there.count() / 1000000 << " ms";
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, PathsThatFlap, ::testing::Range(0, 100));
+
 TEST_F(PathsTest, AnAircraftWithTheModemAloneAndOneWithBothAreReached)
 {
     GatewayConfig far = AircraftConfig("uav1");
