@@ -126,6 +126,18 @@ TEST_F(TopicSubscriberTest, TheEndOfAFormerInstanceIsNotTakenForTheEndOfTheValue
     EXPECT_EQ(Posted(), 3);
 }
 
+TEST_F(TopicSubscriberTest, AMirroredMessageHasNoIntsOfAPostByAManagerHere)
+{
+    mirrored->MessageSource = 5;
+    mirrored->PostMessage();
+    for (const std::uint32_t number : {1u, 2u})
+    {
+        Hear(number, number * 1'000'000'000);
+        EXPECT_EQ(Posted(), static_cast<int>(number));
+        EXPECT_EQ(mirrored->MessageSource, 0);
+    }
+}
+
 // The new sample was lost on its way, or was overtaken.
 TEST_F(TopicSubscriberTest, TheEndOfAnInstanceBeforeItsSuccessorLeavesTheValueUntilThatIsThere)
 {
