@@ -1,4 +1,4 @@
-// What the gateways of a fleet cost: whole nodes in one process, over a wire that counts, under a clock that
+// The cost of the gateways of a fleet: whole nodes in one process, over a wire that counts, under a clock that
 // the program advances.
 //
 // Usage: bench_fleet NODES [idle | flying]. Prints, for one node and second, the samples and bytes that it

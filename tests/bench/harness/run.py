@@ -83,7 +83,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--part", choices=plan.PARTS, help="this part alone")
-    parser.add_argument("--only", default="", help="cases whose name contains this")
+    parser.add_argument("--only", action="append", default=[], help="cases whose name contains this; may be repeated")
     parser.add_argument("--repeat", type=int)
     parser.add_argument("--output", type=pathlib.Path)
     parser.add_argument("programs", type=pathlib.Path)
@@ -93,7 +93,7 @@ def main():
     if not instructions.available():
         print("no valgrind: no instructions are counted", flush=True)
     cases = [case for case in plan.all_cases(programs.transports, 0.02 if arguments.quick else 1)
-             if arguments.only in case.key() and (case.measure != "instructions" or instructions.available())]
+             if any(text in case.key() for text in arguments.only or [""]) and (case.measure != "instructions" or instructions.available())]
     if arguments.quick:
         cases = plan.a_few(cases)
     repetitions = arguments.repeat or (1 if arguments.quick else 5)
