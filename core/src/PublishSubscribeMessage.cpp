@@ -254,7 +254,7 @@ void PublishSubscribeMessage::PostContents(std::unique_ptr<RabitMessage> &messag
 {
     std::unique_lock<std::mutex> lock(*_mutex);
     const bool isExposed = (_sequence.load(std::memory_order_relaxed) & Exposed) != 0;
-    if (!message || typeid(*message) != _type || isExposed || RabitManagerTrace::Current() != nullptr)
+    if (!message || message->GetTypeIndex() != _type || isExposed || RabitManagerTrace::Current() != nullptr)
     {
         lock.unlock();
         PostMessage(message.get(), time);
