@@ -2,14 +2,14 @@
 # has a network namespace with the devices mesh0 and modem0. The ground station has the two bridges on this machine.
 # shellcheck shell=bash
 
-radios_mesh=    # the bridges, named after the domain, so that two demos do not meet
+radios_mesh=    # the bridges; with the domain in the name, so that two demos do not meet, and with rb, so that no real radio has it
 radios_modem=
 radios_spaces=()
 
 # radios_name DOMAIN: sets the names.
 radios_name() {
-    radios_mesh=mesh$1
-    radios_modem=modem$1
+    radios_mesh=rbmesh$1
+    radios_modem=rbmodem$1
 }
 
 # radios_paths MESH MODEM: prints the section `paths` of a configuration.
@@ -35,12 +35,12 @@ radios_make() {
         bridge=$radios_mesh
         [ $radio = mesh ] || bridge=$radios_modem
         ip link add "$bridge" type bridge mcast_snooping 0 && ip link set "$bridge" up &&
-            ip address add "10.$number.${radios_mesh#mesh}.1/24" dev "$bridge" || return 1
+            ip address add "10.$number.${radios_mesh#rbmesh}.1/24" dev "$bridge" || return 1
         for ((k = 1; k <= $1; k++)); do
             space=$(radios_inside "$k")
             ip link add "$bridge.$k" type veth peer name "${radio}0" netns "$space" &&
                 ip link set "$bridge.$k" master "$bridge" up &&
-                ip -n "$space" address add "10.$number.${radios_mesh#mesh}.$((k + 1))/24" dev "${radio}0" &&
+                ip -n "$space" address add "10.$number.${radios_mesh#rbmesh}.$((k + 1))/24" dev "${radio}0" &&
                 ip -n "$space" link set "${radio}0" up || return 1
             rate=10mbit
             [ $radio = mesh ] || rate=250kbit

@@ -299,6 +299,43 @@ TEST_F(AirTrafficTest, ReportsToAStationThatIsBusyWithALargeValueArriveSoon)
     EXPECT_LE(waits.back(), 1s);
 }
 
+// The station answers a report now and then, while a queue of the highest weight is full.
+TEST_F(AirTrafficTest, AcknowledgementsDoNotWaitForCommandsOfALargeWeight)
+{
+    GatewayConfig config = WithBudget(GroundConfig(), 1500);
+    config.Send.push_back({.To = "uav1", .Weight = 100.0});
+    SimulatedNode &ground = fleet.Add(config);
+    IdleManager &commands = ground.AddIdleManager("Commands");
+    AddAircraft(AircraftConfig("uav1"));
+    IdleManager &control = aircraft->AddIdleManager("MissionControl");
+    fleet.RunFor(10s);
+    const auto takeAll = [](IdleManager &manager)
+    {
+        std::shared_ptr<RabitMessage> message;
+        while (manager.GetManagerMessageQueue()->GetMessage(message))
+        {
+        }
+    };
+    Fly(60s, 1s, 1s,
+        [&](Duration passed)
+        {
+            if (passed % 20ms == 0s)
+            {
+                static_cast<void>(
+                    ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
+            }
+            if (passed % 1s == 0s)
+            {
+                ASSERT_TRUE(SendReport(1));
+            }
+            takeAll(commands);
+            takeAll(control);
+        });
+    const auto links = aircraft->Fleet().links;
+    ASSERT_EQ(links.size(), 1u);
+    EXPECT_LE(links[0].resent, 20u) << "of 60 reports";
+}
+
 TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
 {
     GatewayConfig config = WithBudget(AircraftConfig("uav1"));
@@ -326,7 +363,7 @@ TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
 TEST_F(AirTrafficTest, AnIdleNodeWithABudgetCostsLessThanAHundredBytesASecond)
 {
     AddAircraft(WithBudget(AircraftConfig("uav1"), 1500));
-    fleet.Add(WithBudget(GroundConfig(), 4000));
+    fleet.Add(WithBudget(GroundConfig(), 1500));
     fleet.RunFor(60s);
     const std::uint64_t before = Bytes("uav1");
     fleet.RunFor(60s);
@@ -392,7 +429,7 @@ TEST_F(AirTrafficTest, APictureGoesThroughASmallBudgetBesidePosesWithinThreeMinu
     GatewayConfig config = WithBudget(AircraftConfig("uav1"), 1500);
     config.Send.push_back({.To = "*", .Queue = "Pictures", .Class = TrafficClass::Bulk});
     AddAircraft(config);
-    GatewayConfig station = WithBudget(GroundConfig(), 4000);
+    GatewayConfig station = WithBudget(GroundConfig(), 1500);
     station.Accept.push_back({.Queue = "Pictures", .Types = {"GatewayTest::Contact"}});
     SimulatedNode &ground = fleet.Add(station);
     IdleManager &pictures = ground.AddIdleManager("Pictures");
