@@ -2,7 +2,8 @@
 # has a network namespace with the devices mesh0 and modem0. The ground station has the two bridges on this machine.
 # shellcheck shell=bash
 
-radios_mesh=    # the bridges; with the domain in the name, so that two demos do not meet, and with rb, so that no real radio has it
+# The bridges. The domain is in their names, so that two demos do not meet, and rb, since a real radio may be named mesh0.
+radios_mesh=
 radios_modem=
 radios_spaces=()
 

@@ -185,7 +185,7 @@ outlives_the_cut_of_the_mesh)
         ! grep -q 'uav1   UP ' "$work/out" || break
         sleep 0.1
     done
-    mesh=$(grep -o 'mesh is mesh[0-9]*' "$work/err" | grep -o 'mesh[0-9]*$')
+    mesh=$(grep -o 'mesh is rbmesh[0-9]*' "$work/err" | grep -o 'rbmesh[0-9]*$')
     ip link set "$mesh" down
     end_demo
     expect_status 0
