@@ -22,7 +22,7 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(dev_needs "rabit-tools (= ${PROJECT_VERSION})" libboost-dev libfastcdr-dev libyaml-cpp-dev libzstd-dev zlib1g-dev
     libssl-dev libtinyxml2-dev nlohmann-json3-dev cyclonedds-dev)
 if(RABIT_WITH_FASTDDS)
-  list(APPEND dev_needs libfastrtps-dev)
+  list(APPEND dev_needs lib${RABIT_FASTDDS}-dev)
 endif()
 list(JOIN dev_needs ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME librabit-dev)

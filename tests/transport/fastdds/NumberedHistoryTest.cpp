@@ -1,8 +1,6 @@
 // Samples that wait for earlier ones of their writer are found by number, whatever their timestamps are.
 #include "NumberedHistory.h"
 
-#include <fastdds/rtps/attributes/HistoryAttributes.h>
-#include <fastdds/rtps/common/CacheChange.h>
 #include <gtest/gtest.h>
 
 #include <deque>
@@ -10,7 +8,7 @@
 namespace
 {
 
-namespace rtps = eprosima::fastrtps::rtps;
+namespace rtps = Rabit::FastDds::rtps;
 
 class NumberedHistoryTest : public testing::Test, private Rabit::FastDds::NumberedHistory
 {
@@ -43,7 +41,7 @@ private:
         return guid;
     }
 
-    eprosima::fastrtps::RecursiveTimedMutex _mutex;
+    Rabit::FastDds::RecursiveTimedMutex _mutex;
     std::deque<rtps::CacheChange_t> _changes;
 };
 

@@ -5,13 +5,8 @@
 namespace Rabit::FastDds
 {
 
-namespace rtps = eprosima::fastrtps::rtps;
-namespace dds = eprosima::fastdds::dds;
-
 namespace
 {
-
-constexpr std::uint32_t Milliseconds = 1000 * 1000;  // in the nanoseconds of the vendor's durations
 
 rtps::TopicKind_t KindOf(const TopicDescription &topic)
 {
@@ -55,12 +50,9 @@ void ApplyQos(const TopicQos &qos, const std::vector<std::string> &partitions, E
 
 }  // namespace
 
-eprosima::fastrtps::TopicAttributes MakeTopicAttributes(const TopicDescription &topic)
+TopicNames NamesOf(const TopicDescription &topic)
 {
-    eprosima::fastrtps::TopicAttributes attributes(topic.Name.c_str(), topic.TypeName.c_str(), KindOf(topic));
-    attributes.auto_fill_type_object = false;
-    attributes.auto_fill_type_information = false;
-    return attributes;
+    return {.Topic = topic.Name, .Type = topic.TypeName, .HasKey = topic.KeyOf != nullptr};
 }
 
 rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos,
@@ -71,17 +63,14 @@ rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const
     AddNames(topic, partitions, attributes.endpoint.properties);
     // The vendor's defaults (3 s, 5 ms) suit a wire that loses nothing: here they would make every repair,
     // and the end of every replay, seconds late.
-    attributes.times.heartbeatPeriod = {0, 20 * Milliseconds};
-    attributes.times.initialHeartbeatDelay = {0, 5 * Milliseconds};
-    attributes.times.nackResponseDelay = {0, 1 * Milliseconds};
-    attributes.times.nackSupressionDuration = {0, 0};
+    SetPace(attributes, WriterPace{.HeartbeatMs = 20, .FirstHeartbeatMs = 5, .NackResponseMs = 1});
     attributes.mode = rtps::SYNCHRONOUS_WRITER;
     return attributes;
 }
 
-eprosima::fastrtps::WriterQos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+dds::WriterQos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions)
 {
-    eprosima::fastrtps::WriterQos result;
+    dds::WriterQos result;
     ApplyQos(qos, partitions, result);
     return result;
 }
@@ -92,14 +81,13 @@ rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const
     rtps::ReaderAttributes attributes;
     Apply(topic, qos, attributes.endpoint);
     AddNames(topic, partitions, attributes.endpoint.properties);
-    attributes.times.heartbeatResponseDelay = {0, 1 * Milliseconds};
-    attributes.times.initialAcknackDelay = {0, 10 * Milliseconds};
+    SetPace(attributes, ReaderPace{.HeartbeatResponseMs = 1, .FirstAcknowledgementMs = 10});
     return attributes;
 }
 
-eprosima::fastrtps::ReaderQos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+dds::ReaderQos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions)
 {
-    eprosima::fastrtps::ReaderQos result;
+    dds::ReaderQos result;
     ApplyQos(qos, partitions, result);
     return result;
 }

@@ -1,10 +1,5 @@
 #include "FastDdsReader.h"
 
-#include <fastdds/rtps/RTPSDomain.h>
-#include <fastdds/rtps/common/CacheChange.h>
-#include <fastdds/rtps/participant/RTPSParticipant.h>
-#include <fastdds/rtps/reader/RTPSReader.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -12,8 +7,6 @@
 
 namespace Rabit::FastDds
 {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace
 {
@@ -35,16 +28,12 @@ FastDdsReader::FastDdsReader(std::shared_ptr<SessionCore> core, const TopicDescr
       _history(MakeHistoryAttributes())
 {
     auto attributes = MakeReaderAttributes(topic, qos, partitions);
-    _reader = rtps::RTPSDomain::createRTPSReader(&_core->Participant(), attributes, _pool, &_history, this);
+    _reader = MakeReader(_core->Participant(), attributes, _pool, _history, *this);
     if (_reader == nullptr)
     {
         throw TransportError("Fast DDS cannot make a reader of topic " + topic.Name);
     }
-    // A sample may be addressed to no reader in particular: this reader accepts only those of matched
-    // writers.
-    _reader->enableMessagesFromUnkownWriters(false);
-    if (!_core->Participant().registerReader(_reader, MakeTopicAttributes(topic),
-                                             MakeReaderQos(qos, partitions)))
+    if (!Announce(_core->Participant(), _reader, NamesOf(topic), MakeReaderQos(qos, partitions)))
     {
         rtps::RTPSDomain::removeRTPSReader(_reader);
         throw TransportError("Fast DDS cannot announce a reader of topic " + topic.Name);
@@ -63,13 +52,13 @@ int FastDdsReader::MatchedWriters() const
     return static_cast<int>(_matched.size());
 }
 
-void FastDdsReader::onNewCacheChangeAdded(rtps::RTPSReader *reader, const Change *const change)
+void FastDdsReader::OnSample(rtps::RTPSReader &reader, const Change &change)
 {
-    if (!_core->IsOwn(change->writerGUID.guidPrefix))
+    if (!_core->IsOwn(change.writerGUID.guidPrefix))
     {
-        _gate.Run([&] { HandOver(*change); });
+        _gate.Run([&] { HandOver(change); });
     }
-    reader->getHistory()->remove_change(const_cast<Change *>(change));
+    HistoryOf(reader).remove_change(const_cast<Change *>(&change));
 }
 
 void FastDdsReader::HandOver(const Change &change)
@@ -111,7 +100,7 @@ bool FastDdsReader::KeyFrom(const Change &change, SampleBytes bytes, KeyHash &ke
     return bytes.size() >= HeaderSize && _topic.KeyOf(bytes, key);
 }
 
-void FastDdsReader::onReaderMatched(rtps::RTPSReader *reader, rtps::MatchingInfo &info)
+void FastDdsReader::OnMatched(rtps::RTPSReader &reader, const rtps::MatchingInfo &info)
 {
     const Guid writer = info.remoteEndpointGuid;
     if (_core->IsOwn(writer.guidPrefix))
@@ -119,7 +108,7 @@ void FastDdsReader::onReaderMatched(rtps::RTPSReader *reader, rtps::MatchingInfo
         // This version has no setting to ignore the own endpoints, so the match is undone.
         if (info.status == rtps::MATCHED_MATCHING)
         {
-            reader->matched_writer_remove(writer);
+            reader.matched_writer_remove(writer);
         }
         return;
     }
@@ -140,8 +129,7 @@ void FastDdsReader::onReaderMatched(rtps::RTPSReader *reader, rtps::MatchingInfo
     }
 }
 
-void FastDdsReader::on_requested_incompatible_qos(rtps::RTPSReader * /*reader*/,
-                                                  eprosima::fastdds::dds::PolicyMask /*qos*/)
+void FastDdsReader::on_requested_incompatible_qos(rtps::RTPSReader * /*reader*/, dds::PolicyMask /*qos*/)
 {
     _core->Log()->IncompatibleQos(_topic.Name);
 }

@@ -1,10 +1,5 @@
 #include "FastDdsWriter.h"
 
-#include <fastdds/rtps/RTPSDomain.h>
-#include <fastdds/rtps/common/WriteParams.h>
-#include <fastdds/rtps/participant/RTPSParticipant.h>
-#include <fastdds/rtps/writer/RTPSWriter.h>
-
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -14,8 +9,6 @@
 
 namespace Rabit::FastDds
 {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace
 {
@@ -27,16 +20,15 @@ FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescr
                              const TopicQos &qos, const std::vector<std::string> &partitions)
     : VendorWriter(std::move(core), topic, qos),
       _pool(std::make_shared<PayloadPool>([] {})),
-      _history(qos.Depth, qos.Durability == Durability::TransientLocal)
+      _history(qos.Depth, qos.Durability == Durability::TransientLocal, _pool)
 {
     auto attributes = MakeWriterAttributes(topic, qos, partitions);
-    _writer = rtps::RTPSDomain::createRTPSWriter(&_core->Participant(), attributes, _pool, &_history, this);
+    _writer = MakeWriter(_core->Participant(), attributes, _pool, _history, *this);
     if (_writer == nullptr)
     {
         throw TransportError("Fast DDS cannot make a writer of topic " + topic.Name);
     }
-    if (!_core->Participant().registerWriter(_writer, MakeTopicAttributes(topic),
-                                             MakeWriterQos(qos, partitions)))
+    if (!Announce(_core->Participant(), _writer, NamesOf(topic), MakeWriterQos(qos, partitions)))
     {
         rtps::RTPSDomain::removeRTPSWriter(_writer);
         throw TransportError("Fast DDS cannot announce a writer of topic " + topic.Name);
@@ -105,7 +97,7 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
     }
     // Unregistered as well: readers need not keep the instance for this writer.
     rtps::CacheChange_t *change =
-        _writer->new_change(dispose ? rtps::NOT_ALIVE_DISPOSED_UNREGISTERED : rtps::ALIVE);
+        SentHistory::New(*_writer, _history, dispose ? rtps::NOT_ALIVE_DISPOSED_UNREGISTERED : rtps::ALIVE);
     if (change == nullptr)
     {
         _pool->Release(buffer);
@@ -131,7 +123,7 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
     _targets = nullptr;
     if (!added)
     {
-        _writer->release_change(change);
+        SentHistory::Release(*_writer, _history, change);
         return Fail("Fast DDS refused it");
     }
     return WriteResult::Ok;
@@ -166,14 +158,14 @@ int FastDdsWriter::Destinations() const
     return _core->HasMulticast() ? std::min(participants, 1) : participants;
 }
 
-void FastDdsWriter::onWriterMatched(rtps::RTPSWriter *writer, rtps::MatchingInfo &info)
+void FastDdsWriter::OnMatched(rtps::RTPSWriter &writer, const rtps::MatchingInfo &info)
 {
     if (_core->IsOwn(info.remoteEndpointGuid.guidPrefix))
     {
         // This version has no setting to ignore the own endpoints, so the match is undone.
         if (info.status == rtps::MATCHED_MATCHING)
         {
-            writer->matched_reader_remove(info.remoteEndpointGuid);
+            writer.matched_reader_remove(info.remoteEndpointGuid);
         }
         return;
     }
@@ -188,14 +180,13 @@ void FastDdsWriter::onWriterMatched(rtps::RTPSWriter *writer, rtps::MatchingInfo
     }
 }
 
-void FastDdsWriter::onWriterChangeReceivedByAll(rtps::RTPSWriter * /*writer*/, rtps::CacheChange_t *change)
+void FastDdsWriter::OnReceivedByAll(const rtps::CacheChange_t &change)
 {
     // Under the writer's mutex, and no other one of ours.
-    _history.ReceivedByAll(*change);
+    _history.ReceivedByAll(change);
 }
 
-void FastDdsWriter::on_offered_incompatible_qos(rtps::RTPSWriter * /*writer*/,
-                                                eprosima::fastdds::dds::PolicyMask /*qos*/)
+void FastDdsWriter::on_offered_incompatible_qos(rtps::RTPSWriter * /*writer*/, dds::PolicyMask /*qos*/)
 {
     _core->Log()->IncompatibleQos(_topic.Name);
 }

@@ -1,9 +1,5 @@
 #include "GuardedUdp.h"
 
-#include <fastdds/rtps/network/SenderResource.h>
-#include <fastdds/rtps/transport/ChainingTransport.h>
-#include <fastrtps/utils/IPLocator.h>
-
 #include <algorithm>
 #include <chrono>
 #include <functional>
@@ -33,11 +29,9 @@ namespace Rabit::FastDds
 
 using namespace Rtps;
 
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastdds::rtps::ChainingTransport;
-using eprosima::fastdds::rtps::TransportDescriptorInterface;
-using eprosima::fastdds::rtps::TransportInterface;
-using eprosima::fastdds::rtps::TransportReceiverInterface;
+using rtps::TransportDescriptorInterface;
+using rtps::TransportInterface;
+using rtps::TransportReceiverInterface;
 
 namespace
 {
@@ -82,11 +76,11 @@ bool IsGroup(const rtps::Locator_t &locator)
     return rtps::IPLocator::isMulticast(locator);
 }
 
-class GuardedUdp final : public ChainingTransport
+class GuardedUdp final : public ChainedUdp
 {
 public:
     explicit GuardedUdp(const GuardedUdpDescriptor &descriptor)
-        : ChainingTransport(descriptor),
+        : ChainedUdp(descriptor),
           _descriptor(descriptor),
           _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod,
                  RtpsGuard::Requests::Checked, descriptor.Chosen().Goodbyes),
@@ -147,24 +141,23 @@ public:
 
     TransportDescriptorInterface *get_configuration() override { return &_descriptor; }
 
-    bool transform_remote_locator(const rtps::Locator_t &remote, rtps::Locator_t &result) const override
+    bool MaySendTo(const rtps::Locator_t &remote) const override
     {
         const std::uint32_t port = _descriptor.Chosen().GroupPort;
-        return (port == 0 || port == remote.port || !rtps::IPLocator::isMulticast(remote)) &&
-               low_level_transport_->transform_remote_locator(remote, result);
+        return port == 0 || port == remote.port || !rtps::IPLocator::isMulticast(remote);
     }
 
     // The vendor calls it with a lock held that it also holds for OpenOutputChannel. Our own lock costs
     // little beside that, and does not rely on it.
-    bool send(rtps::SenderResource *sender, const rtps::octet *buffer, std::uint32_t size,
-              rtps::LocatorsIterator *begin, rtps::LocatorsIterator *end,
-              const std::chrono::steady_clock::time_point &timeout) override
+    bool Send(rtps::SenderResource &to, std::span<const std::uint8_t> whole, rtps::LocatorsIterator &begin,
+              rtps::LocatorsIterator &end, const std::chrono::steady_clock::time_point &timeout) override
     {
-        std::span<const std::uint8_t> datagram(buffer, SizeWithoutStatistics({buffer, size}));
+        rtps::SenderResource *const sender = &to;
+        std::span<const std::uint8_t> datagram = whole.first(SizeWithoutStatistics(whole));
         _guard.Sending(datagram);
         OutgoingMessage message = ReadOutgoing(datagram);
         message.HasSamples = message.HasSamples || SendingSamples::Now();
-        if (!message.HasSamples && PutExchange(sender, datagram, *begin, *end))
+        if (!message.HasSamples && PutExchange(sender, datagram, begin, end))
         {
             return true;
         }
@@ -180,7 +173,7 @@ public:
         }
         if (Meeting() != nullptr && !message.HasSamples && Meeting()->Sending(datagram))
         {
-            NoteRoute(sender, datagram, *begin, *end);
+            NoteRoute(sender, datagram, begin, end);
             return true;
         }
         const auto now = std::chrono::steady_clock::now();
@@ -190,9 +183,9 @@ public:
             return true;
         }
         _chosen.clear();
-        for (; *begin != *end; ++*begin)
+        for (; begin != end; ++begin)
         {
-            const rtps::Locator_t &destination = **begin;
+            const rtps::Locator_t &destination = *begin;
             const std::uint64_t number = std::uint64_t{socket} << 32 | NumberOf(destination);
             const bool held =
                 (message.Announcement &&
@@ -419,8 +412,7 @@ private:
         _descriptor.Chosen().OnSent(samples, datagrams, datagrams * datagram.size());
         ListIterator first(_chosen.cbegin());
         ListIterator last(_chosen.cend());
-        return sender->send(datagram.data(), static_cast<std::uint32_t>(datagram.size()), &first, &last,
-                            timeout);
+        return SendOn(*sender, datagram, first, last, timeout);
     }
     // Returns true if the datagram is held for SendHeld (HeldDatagrams). Requires _sending. The writer, which
     // owns the held datagrams, is destroyed before this object.
@@ -532,13 +524,13 @@ private:
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;
     std::vector<std::uint8_t> _shortened;  // the datagram to send, if shorter than the vendor's
-    eprosima::fastdds::rtps::SendResourceList _noSockets;
+    rtps::SendResourceList _noSockets;
 };
 
 }  // namespace
 
-GuardedUdpDescriptor::GuardedUdpDescriptor(
-    std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp, Settings settings)
+GuardedUdpDescriptor::GuardedUdpDescriptor(std::shared_ptr<rtps::UDPv4TransportDescriptor> udp,
+                                           Settings settings)
     : ChainingTransportDescriptor(std::move(udp)), _settings(std::move(settings))
 {
     maxMessageSize = _settings.MaxDatagram;

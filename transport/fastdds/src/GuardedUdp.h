@@ -10,9 +10,6 @@
 //   (rtps/Meeting.h).
 #pragma once
 
-#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -20,6 +17,7 @@
 #include <optional>
 #include <utility>
 
+#include "Vendor.h"
 #include "common/KeyExchangeThread.h"
 #include "common/OwnNetworks.h"
 #include "guard/AuthenticationThread.h"
@@ -30,10 +28,10 @@ namespace Rabit::FastDds
 {
 
 // A socket of the vendor's, and an address.
-using Route = std::pair<eprosima::fastrtps::rtps::SenderResource *, eprosima::fastrtps::rtps::Locator_t>;
+using Route = std::pair<rtps::SenderResource *, rtps::Locator_t>;
 using KeyThread = KeyExchangeThread<Route>;
 
-class GuardedUdpDescriptor final : public eprosima::fastdds::rtps::ChainingTransportDescriptor
+class GuardedUdpDescriptor final : public rtps::ChainingTransportDescriptor
 {
 public:
     struct Settings
@@ -67,17 +65,16 @@ public:
         // Where the guard notes the goodbyes of known participants.
         std::shared_ptr<Rtps::RecentGoodbyes> Goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
         // The group to which samples go; empty: they go to each host separately.
-        std::optional<eprosima::fastrtps::rtps::Locator_t> SampleGroup{};
+        std::optional<rtps::Locator_t> SampleGroup{};
         // Peers are listed; they may not hear the group.
         bool HasPeers = false;
         // The networks of the named interfaces.
         OwnNetworks Networks{{}, {}};
     };
 
-    GuardedUdpDescriptor(std::shared_ptr<eprosima::fastdds::rtps::UDPv4TransportDescriptor> udp,
-                         Settings settings);
+    GuardedUdpDescriptor(std::shared_ptr<rtps::UDPv4TransportDescriptor> udp, Settings settings);
 
-    eprosima::fastdds::rtps::TransportInterface *create_transport() const override;
+    rtps::TransportInterface *create_transport() const override;
     std::uint32_t max_message_size() const override { return maxMessageSize; }
     const Settings &Chosen() const { return _settings; }
 

@@ -1,16 +1,11 @@
 #include "KeepLastHistory.h"
 
-#include <fastdds/rtps/attributes/HistoryAttributes.h>
-#include <fastdds/rtps/common/CacheChange.h>
-
 #include <algorithm>
 #include <functional>
 #include <string_view>
 
 namespace Rabit::FastDds
 {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace
 {
@@ -24,8 +19,9 @@ rtps::HistoryAttributes MakeAttributes(int depth)
 
 }  // namespace
 
-KeepLastHistory::KeepLastHistory(int depth, bool keepsForLateReaders)
-    : WriterHistory(MakeAttributes(depth)),
+KeepLastHistory::KeepLastHistory(int depth, bool keepsForLateReaders,
+                                 const std::shared_ptr<rtps::IPayloadPool> &pool)
+    : SentHistory(MakeAttributes(depth), pool),
       _keepsForLateReaders(keepsForLateReaders),
       _kept(static_cast<std::size_t>(depth))
 {
@@ -76,13 +72,9 @@ void KeepLastHistory::Drop(const rtps::InstanceHandle_t &instance, std::uint64_t
     _kept.Remove(instance, number);  // even if the history had lost it, so that the caller's loop ends
 }
 
-KeepLastHistory::iterator KeepLastHistory::remove_change_nts(const_iterator removal, bool release)
+void KeepLastHistory::OnRemoval(const Change &change)
 {
-    if (removal != m_changes.end())
-    {
-        _kept.Remove((*removal)->instanceHandle, (*removal)->sequenceNumber.to64long());
-    }
-    return WriterHistory::remove_change_nts(removal, release);
+    _kept.Remove(change.instanceHandle, change.sequenceNumber.to64long());
 }
 
 KeepLastHistory::iterator KeepLastHistory::Find(std::uint64_t number)

@@ -1,28 +1,10 @@
 #include "KeyAddressees.h"
 
-#include <fastdds/rtps/common/CacheChange.h>
-#include <fastdds/rtps/common/Guid.h>
-#include <fastdds/rtps/writer/RTPSWriter.h>
-#include <fastdds/rtps/writer/StatefulWriter.h>
-
 #include <algorithm>
 #include <mutex>
 
-// A function of the library that no installed header declares: finds a writer of a participant of this
-// process, builtin ones included; nullptr if there is none.
-namespace eprosima::fastrtps::rtps
-{
-class RTPSDomainImpl
-{
-public:
-    static RTPSWriter *find_local_writer(const GUID_t &guid);
-};
-}  // namespace eprosima::fastrtps::rtps
-
 namespace Rabit::FastDds
 {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 bool KeyAddressees::HasKeysOf(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer)
 {
@@ -36,7 +18,7 @@ bool KeyAddressees::HasKeysOf(const Rtps::GuidPrefix &own, const Rtps::GuidPrefi
     std::copy(peer.begin(), peer.end(), reader.guidPrefix.value);
     std::copy(std::begin(secureWriter), std::end(secureWriter), writer.entityId.value);
     std::copy(std::begin(secureReader), std::end(secureReader), reader.entityId.value);
-    rtps::RTPSWriter *const found = rtps::RTPSDomainImpl::find_local_writer(writer);
+    rtps::RTPSWriter *const found = FindWriter(writer);
     return found != nullptr && found->matched_reader_is_matched(reader);
 }
 
@@ -47,7 +29,7 @@ bool KeyAddressees::Heed(const rtps::RTPSParticipant &participant)
     static KeyAddressees addressees;
     rtps::GUID_t guid = participant.getGuid();
     std::copy(std::begin(keyWriter), std::end(keyWriter), guid.entityId.value);
-    rtps::RTPSWriter *const writer = rtps::RTPSDomainImpl::find_local_writer(guid);
+    rtps::RTPSWriter *const writer = FindWriter(guid);
     if (writer == nullptr)
     {
         return false;
@@ -60,12 +42,12 @@ bool KeyAddressees::Heed(const rtps::RTPSParticipant &participant)
 
 void KeyAddressees::SetPeriods(const rtps::RTPSParticipant &participant, bool isSettled)
 {
-    const eprosima::fastrtps::Duration_t soon{0, 250'000'000};
-    const eprosima::fastrtps::Duration_t calm{2, 0};
+    const Duration soon{0, 250'000'000};
+    const Duration calm{2, 0};
     struct Writer
     {
         rtps::octet Entity[4];
-        eprosima::fastrtps::Duration_t Period;
+        Duration Period;
     };
     // OMG DDS Security 1.1, 7.4.5: the protected writers of publications and subscriptions, and that of keys.
     const Writer writers[] = {{{0xff, 0x00, 0x03, 0xc2}, isSettled ? calm : soon},
@@ -75,12 +57,9 @@ void KeyAddressees::SetPeriods(const rtps::RTPSParticipant &participant, bool is
     for (const Writer &each : writers)
     {
         std::copy(std::begin(each.Entity), std::end(each.Entity), guid.entityId.value);
-        if (auto *const writer =
-                dynamic_cast<rtps::StatefulWriter *>(rtps::RTPSDomainImpl::find_local_writer(guid)))
+        if (rtps::RTPSWriter *const writer = FindWriter(guid))
         {
-            rtps::WriterTimes times;
-            times.heartbeatPeriod = each.Period;
-            writer->updateTimes(times);
+            SetHeartbeatPeriod(*writer, each.Period);
         }
     }
 }

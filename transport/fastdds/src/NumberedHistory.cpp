@@ -1,14 +1,12 @@
 #include "NumberedHistory.h"
 
-#include <fastdds/rtps/common/CacheChange.h>
-
 #include <algorithm>
 #include <mutex>
 
 namespace Rabit::FastDds
 {
 
-bool NumberedHistory::received_change(eprosima::fastrtps::rtps::CacheChange_t *change, std::size_t)
+bool NumberedHistory::received_change(rtps::CacheChange_t *change, std::size_t)
 {
     const std::lock_guard lock(*getMutex());
     const auto isLater = [change](const auto *other)

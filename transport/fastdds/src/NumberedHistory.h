@@ -1,8 +1,8 @@
 #pragma once
 
-#include <fastdds/rtps/history/ReaderHistory.h>
-
 #include <cstddef>
+
+#include "Vendor.h"
 
 namespace Rabit::FastDds
 {
@@ -15,13 +15,13 @@ namespace Rabit::FastDds
 // or go back where a clock was set, or where an older value is sent again.
 //
 // Guarded by the reader's mutex; used on the vendor's receiving threads.
-class NumberedHistory : public eprosima::fastrtps::rtps::ReaderHistory
+class NumberedHistory : public rtps::ReaderHistory
 {
 public:
     using ReaderHistory::ReaderHistory;
     using ReaderHistory::received_change;
 
-    bool received_change(eprosima::fastrtps::rtps::CacheChange_t *change, std::size_t missingBefore) override;
+    bool received_change(rtps::CacheChange_t *change, std::size_t missingBefore) override;
 };
 
 }  // namespace Rabit::FastDds

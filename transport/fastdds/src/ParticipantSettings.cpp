@@ -1,12 +1,5 @@
 #include "ParticipantSettings.h"
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
-#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
-#include <fastrtps/attributes/LibrarySettingsAttributes.h>
-#include <fastrtps/attributes/ParticipantAttributes.h>
-#include <fastrtps/utils/IPLocator.h>
-#include <fastrtps/xmlparser/XMLProfileManager.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
@@ -23,11 +16,8 @@ namespace Rabit::FastDds
 
 using namespace Rtps;
 
-namespace rtps = eprosima::fastrtps::rtps;
-using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
-using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
-using eprosima::fastrtps::xmlparser::XMLP_ret;
-using eprosima::fastrtps::xmlparser::XMLProfileManager;
+using rtps::SharedMemTransportDescriptor;
+using rtps::UDPv4TransportDescriptor;
 
 namespace
 {
@@ -42,29 +32,27 @@ constexpr std::uint32_t ParticipantsPerPeer = 16;
 // OMG DDSI-RTPS 2.3, 9.6.1.4.1: the discovery group, and by default the group of samples.
 constexpr const char *MulticastAddress = "239.255.0.1";
 
-eprosima::fastrtps::Duration_t ToDuration(std::chrono::milliseconds time)
+Duration ToDuration(std::chrono::milliseconds time)
 {
     const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);
     return {static_cast<std::int32_t>(seconds.count()),
             static_cast<std::uint32_t>(std::chrono::nanoseconds(time - seconds).count())};
 }
 
-rtps::RTPSParticipantAttributes LoadProfile(const std::string &file)
+rtps::RTPSParticipantAttributes ReadProfile(const std::string &file)
 {
-    // The vendor has one table of profiles for the process: load and read it without interruption.
     static std::mutex mutex;
     const std::lock_guard lock(mutex);
     if (!std::filesystem::is_regular_file(file))
     {
         throw TransportError("there is no Fast DDS profiles file " + file, "backend_config");
     }
-    if (XMLProfileManager::loadXMLFile(file) != XMLP_ret::XML_OK)
+    auto profile = LoadProfile(file);
+    if (!profile)
     {
         throw TransportError("Fast DDS does not accept the profiles file " + file, "backend_config");
     }
-    eprosima::fastrtps::ParticipantAttributes profile;
-    XMLProfileManager::getDefaultParticipantAttributes(profile);
-    return profile.rtps;
+    return *profile;
 }
 
 void AddSecurity(const TransportSecurity &security, rtps::PropertyPolicy &properties)
@@ -226,7 +214,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     rtps::RTPSParticipantAttributes attributes;
     if (!settings.BackendConfig.empty())
     {
-        attributes = LoadProfile(settings.BackendConfig);
+        attributes = ReadProfile(settings.BackendConfig);
     }
     attributes.setName(settings.Node.c_str());
     // Liveliness of single writers is not used: participants have leases, and nodes send beats.
@@ -257,19 +245,13 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
 
 bool HasOwnTransports(const std::string &profilesFile)
 {
-    return !profilesFile.empty() && !LoadProfile(profilesFile).userTransports.empty();
+    return !profilesFile.empty() && !ReadProfile(profilesFile).userTransports.empty();
 }
 
 void SetLibraryDefaults()
 {
     static std::once_flag once;
-    std::call_once(once,
-                   []
-                   {
-                       eprosima::fastrtps::LibrarySettingsAttributes library;
-                       library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
-                       XMLProfileManager::library_settings(library);
-                   });
+    std::call_once(once, SwitchIntraprocessOff);
 }
 
 }  // namespace Rabit::FastDds

@@ -1,13 +1,13 @@
 // TransportSettings in the vendor's terms.
 #pragma once
 
-#include <fastdds/rtps/attributes/RTPSParticipantAttributes.h>
 #include <rabit/transport/Transport.h>
 
 #include <memory>
 #include <string>
 
 #include "GuardedUdp.h"
+#include "Vendor.h"
 #include "common/SessionLog.h"
 
 namespace Rabit::FastDds
@@ -16,9 +16,9 @@ namespace Rabit::FastDds
 // In `settings`, Interfaces are addresses of this host (empty: all), and the hosts of Peers are addresses.
 // Throws TransportError for settings that cannot be honoured. `log` counts dropped datagrams. `udp`: has the
 // calls and objects that are to be used; the rest is set here.
-eprosima::fastrtps::rtps::RTPSParticipantAttributes MakeParticipantAttributes(
-    const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-    GuardedUdpDescriptor::Settings udp);
+rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSettings &settings,
+                                                          const std::shared_ptr<SessionLog> &log,
+                                                          GuardedUdpDescriptor::Settings udp);
 
 // True if the profiles file, if any, defines transports. Throws TransportError if the vendor refuses the
 // file.

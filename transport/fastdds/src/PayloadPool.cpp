@@ -86,16 +86,20 @@ void PayloadPool::Release(Buffer buffer)
 
 void PayloadPool::Adopt(Buffer buffer, std::uint32_t length, Change &change)
 {
+    Fill(change.serializedPayload, buffer, length);
+    Own(change);
+}
+
+void PayloadPool::Fill(Payload &payload, Buffer buffer, std::uint32_t length)
+{
     _held += buffer.Capacity;
-    auto &payload = change.serializedPayload;
     payload.data = buffer.Data;
     payload.max_size = buffer.Capacity;
     payload.length = length;
     payload.pos = 0;
-    change.payload_owner(this);
 }
 
-bool PayloadPool::get_payload(std::uint32_t size, Change &change)
+bool PayloadPool::Take(std::uint32_t size, Payload &payload)
 {
     if (size > MaxSample || _held + size > MostArriving)
     {
@@ -104,7 +108,7 @@ bool PayloadPool::get_payload(std::uint32_t size, Change &change)
     }
     try
     {
-        Adopt(Acquire(size), size, change);
+        Fill(payload, Acquire(size), size);
         return true;
     }
     catch (const std::bad_alloc &)
@@ -113,24 +117,23 @@ bool PayloadPool::get_payload(std::uint32_t size, Change &change)
     }
 }
 
-bool PayloadPool::get_payload(Payload &data, IPayloadPool *& /*owner*/, Change &change)
+bool PayloadPool::TakeCopy(const Payload &data, Payload &payload)
 {
     // The data lies in the receiving thread's buffer: this copy is the one that every RTPS reader makes.
-    if (!get_payload(data.length, change))
+    if (!Take(data.length, payload))
     {
         return false;
     }
-    change.serializedPayload.encapsulation = data.encapsulation;
+    payload.encapsulation = data.encapsulation;
     if (data.length > 0)
     {
-        std::memcpy(change.serializedPayload.data, data.data, data.length);
+        std::memcpy(payload.data, data.data, data.length);
     }
     return true;
 }
 
-bool PayloadPool::release_payload(Change &change)
+void PayloadPool::GiveBack(Payload &payload)
 {
-    auto &payload = change.serializedPayload;
     RABIT_ASSERT(payload.max_size <= _held);
     _held -= payload.max_size;
     Release({payload.data, payload.max_size});
@@ -138,8 +141,6 @@ bool PayloadPool::release_payload(Change &change)
     payload.max_size = 0;
     payload.length = 0;
     payload.pos = 0;
-    change.payload_owner(nullptr);
-    return true;
 }
 
 }  // namespace Rabit::FastDds

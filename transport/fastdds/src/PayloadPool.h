@@ -4,8 +4,6 @@
 // buffer's size is bounded whatever a datagram claims, and large buffers are freed after use.
 #pragma once
 
-#include <fastdds/rtps/common/CacheChange.h>
-#include <fastdds/rtps/history/IPayloadPool.h>
 #include <rabit/transport/Transport.h>
 
 #include <atomic>
@@ -16,6 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "Vendor.h"
+
 namespace Rabit::FastDds
 {
 
@@ -23,11 +23,11 @@ namespace Rabit::FastDds
 constexpr std::uint32_t MaxSample = LargestSample;
 
 // Thread-safe.
-class PayloadPool final : public eprosima::fastrtps::rtps::IPayloadPool
+class PayloadPool final : public Buffers
 {
 public:
-    using Change = eprosima::fastrtps::rtps::CacheChange_t;
-    using Payload = eprosima::fastrtps::rtps::SerializedPayload_t;
+    using Change = rtps::CacheChange_t;
+    using Payload = rtps::SerializedPayload_t;
 
     struct Buffer
     {
@@ -51,12 +51,12 @@ public:
     // Makes the buffer the payload of a change that has none.
     void Adopt(Buffer buffer, std::uint32_t length, Change &change);
 
-    // IPayloadPool
-    bool get_payload(std::uint32_t size, Change &change) override;
-    bool get_payload(Payload &data, eprosima::fastrtps::rtps::IPayloadPool *&owner, Change &change) override;
-    bool release_payload(Change &change) override;
-
 private:
+    bool Take(std::uint32_t size, Payload &payload) override;
+    bool TakeCopy(const Payload &data, Payload &payload) override;
+    void GiveBack(Payload &payload) override;
+    void Fill(Payload &payload, Buffer buffer, std::uint32_t length);
+
     const std::function<void()> _onRefused;
     std::mutex _mutex;
     std::vector<Buffer> _free;           // guarded by _mutex

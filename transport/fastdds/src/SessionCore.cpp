@@ -1,17 +1,8 @@
 #include "SessionCore.h"
 
-#include <fastdds/rtps/RTPSDomain.h>
-#include <fastdds/rtps/builtin/data/ParticipantProxyData.h>
-#include <fastdds/rtps/builtin/data/ReaderProxyData.h>
-#include <fastdds/rtps/builtin/data/WriterProxyData.h>
-#include <fastdds/rtps/participant/RTPSParticipant.h>
-#include <fastrtps/utils/IPLocator.h>
-#include <fastdds/rtps/common/VendorId_t.hpp>
-
 #include <algorithm>
 #include <iterator>
 #include <random>
-#include <type_traits>
 #include <utility>
 
 #include "EndpointSettings.h"
@@ -21,8 +12,6 @@
 
 namespace Rabit::FastDds
 {
-
-namespace rtps = eprosima::fastrtps::rtps;
 
 namespace
 {
@@ -51,10 +40,10 @@ rtps::GuidPrefix_t MakeGuidPrefix()
     return prefix;
 }
 
-PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
+PeerPlace PlaceOf(const ParticipantNews &peer)
 {
     PeerPlace place;
-    for (const auto *locators : {&peer.metatraffic_locators.unicast, &peer.default_locators.unicast})
+    for (const auto *locators : {&peer.Discovery.unicast, &peer.Samples.unicast})
     {
         for (const rtps::Locator_t &locator : *locators)
         {
@@ -67,25 +56,18 @@ PeerPlace PlaceOf(const rtps::ParticipantProxyData &peer)
     return place;
 }
 
-// A writer's or a reader's announcement.
-template <typename Proxy>
-RemoteEndpoint Described(const Proxy &proxy, const std::string &node)
+RemoteEndpoint Described(const EndpointNews &news, const std::string &node)
 {
-    RemoteEndpoint endpoint;
-    endpoint.Id = ToWriterId(proxy.guid());
-    endpoint.IsWriter = std::is_same_v<Proxy, rtps::WriterProxyData>;
-    endpoint.Topic = proxy.topicName().to_string();
-    endpoint.Type = proxy.typeName().to_string();
-    const auto &qos = proxy.m_qos;
-    endpoint.Reliability = qos.m_reliability.kind == eprosima::fastdds::dds::RELIABLE_RELIABILITY_QOS
-                               ? Reliability::Reliable
-                               : Reliability::BestEffort;
-    endpoint.Durability = qos.m_durability.kind == eprosima::fastdds::dds::VOLATILE_DURABILITY_QOS
-                              ? Durability::Volatile
-                              : Durability::TransientLocal;
-    endpoint.Partitions = qos.m_partition.getNames();
-    endpoint.Node = node;
-    return endpoint;
+    return {.Id = ToWriterId(news.Guid),
+            .IsWriter = news.IsWriter,
+            .Topic = news.Topic,
+            .Type = news.Type,
+            .Reliability = news.Reliability == dds::RELIABLE_RELIABILITY_QOS ? Reliability::Reliable
+                                                                             : Reliability::BestEffort,
+            .Durability = news.Durability == dds::VOLATILE_DURABILITY_QOS ? Durability::Volatile
+                                                                          : Durability::TransientLocal,
+            .Partitions = news.Partitions,
+            .Node = node};
 }
 
 }  // namespace
@@ -157,20 +139,18 @@ bool SessionCore::IsOwn(const GuidPrefix &prefix) const
     return prefix == _participant.load()->getGuid().guidPrefix;
 }
 
-void SessionCore::onParticipantDiscovery(rtps::RTPSParticipant * /*participant*/,
-                                         rtps::ParticipantDiscoveryInfo &&info)
+void SessionCore::OnParticipant(const ParticipantNews &news)
 {
-    switch (info.status)
+    switch (news.Change)
     {
-        case rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT:
-        case rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT:
-            PeerAppeared(info.info);
+        case ParticipantChange::Present:
+            PeerAppeared(news);
             break;
-        case rtps::ParticipantDiscoveryInfo::REMOVED_PARTICIPANT:
-            PeerGone(NameOf(info.info.m_guid.guidPrefix), PeerEvent::Kind::Left);
+        case ParticipantChange::Left:
+            PeerGone(NameOf(news.Prefix), PeerEvent::Kind::Left);
             break;
-        case rtps::ParticipantDiscoveryInfo::DROPPED_PARTICIPANT:
-            PeerGone(NameOf(info.info.m_guid.guidPrefix), PeerEvent::Kind::Lost);
+        case ParticipantChange::Lost:
+            PeerGone(NameOf(news.Prefix), PeerEvent::Kind::Lost);
             break;
     }
 }
@@ -187,19 +167,19 @@ void SessionCore::Announce()
         });
 }
 
-void SessionCore::PeerAppeared(const rtps::ParticipantProxyData &peer)
+void SessionCore::PeerAppeared(const ParticipantNews &peer)
 {
-    const auto incarnation = ParseUserData(peer.m_userData.data_vec());
-    if (!incarnation || IsOwn(peer.m_guid.guidPrefix))
+    const auto incarnation = ParseUserData(peer.UserData);
+    const GuidPrefix &prefix = peer.Prefix;
+    if (!incarnation || IsOwn(prefix))
     {
         return;
     }
-    const Rtps::GuidPrefix name = NameOf(peer.m_guid.guidPrefix);
-    const Newcomer newcomer{.Who = {peer.m_participantName.to_string(), *incarnation},
-                            .Place = PlaceOf(peer)};
+    const Rtps::GuidPrefix name = NameOf(prefix);
+    const Newcomer newcomer{.Who = {peer.Name, *incarnation}, .Place = PlaceOf(peer)};
     if (_security)
     {
-        const auto protection = peer.plugin_security_attributes_;
+        const std::uint32_t protection = peer.Protection.value_or(0);
         if ((protection & IsSecured) != 0 &&
             ((protection & HasDiscoveryEncrypted) != 0) != _security->Encrypts)
         {
@@ -270,29 +250,18 @@ void SessionCore::PeerGone(const Rtps::GuidPrefix &peer, PeerEvent::Kind how)
     Gone(peer, how);
 }
 
-void SessionCore::onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::ReaderDiscoveryInfo &&info)
-{
-    NoteEndpoint(info.info, info.status == rtps::ReaderDiscoveryInfo::REMOVED_READER);
-}
-
-void SessionCore::onWriterDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::WriterDiscoveryInfo &&info)
-{
-    NoteEndpoint(info.info, info.status == rtps::WriterDiscoveryInfo::REMOVED_WRITER);
-}
-
 // The vendor also reports our own endpoints.
-template <typename Proxy>
-void SessionCore::NoteEndpoint(const Proxy &endpoint, bool isRemoved)
+void SessionCore::OnEndpoint(const EndpointNews &news)
 {
-    const WriterId id = ToWriterId(endpoint.guid());
-    if (isRemoved)
+    const WriterId id = ToWriterId(news.Guid);
+    if (news.IsRemoved)
     {
         Topics().RemoteGone(id);
     }
-    else if (!IsOwn(endpoint.guid().guidPrefix))
+    else if (!IsOwn(news.Guid.guidPrefix))
     {
         const auto identity = IdentityOf(id);
-        Topics().RemoteAppeared(Described(endpoint, identity != nullptr ? identity->Node : ""));
+        Topics().RemoteAppeared(Described(news, identity != nullptr ? identity->Node : ""));
     }
 }
 

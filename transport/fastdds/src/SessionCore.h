@@ -1,7 +1,5 @@
 #pragma once
 
-#include <fastdds/rtps/common/Guid.h>
-#include <fastdds/rtps/participant/RTPSParticipantListener.h>
 #include <rabit/transport/Transport.h>
 
 #include <atomic>
@@ -13,6 +11,7 @@
 
 #include "AnnouncementTimer.h"
 #include "GuardedUdp.h"
+#include "Vendor.h"
 #include "common/ProcessNumber.h"
 #include "common/VendorCore.h"
 #include "rtps/MeetingThread.h"
@@ -21,10 +20,10 @@ namespace Rabit::FastDds
 {
 
 // The participant of a session.
-class SessionCore final : public VendorCore, private eprosima::fastrtps::rtps::RTPSParticipantListener
+class SessionCore final : public VendorCore, private ParticipantEvents
 {
 public:
-    using GuidPrefix = eprosima::fastrtps::rtps::GuidPrefix_t;
+    using GuidPrefix = rtps::GuidPrefix_t;
 
     // Joins the network. Throws TransportError.
     SessionCore(const TransportSettings &settings, const SessionContext &context);
@@ -36,25 +35,19 @@ public:
     // VendorCore::Close
     void Close();
 
-    eprosima::fastrtps::rtps::RTPSParticipant &Participant() { return *_participant; }
+    rtps::RTPSParticipant &Participant() { return *_participant; }
     bool IsOwn(const GuidPrefix &prefix) const;
     // True if samples for several readers go by multicast.
     bool HasMulticast() const { return _multicast; }
 
 private:
-    void onParticipantDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
-                                eprosima::fastrtps::rtps::ParticipantDiscoveryInfo &&info) override;
-    void onReaderDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
-                           eprosima::fastrtps::rtps::ReaderDiscoveryInfo &&info) override;
-    void onWriterDiscovery(eprosima::fastrtps::rtps::RTPSParticipant *participant,
-                           eprosima::fastrtps::rtps::WriterDiscoveryInfo &&info) override;
-    void onParticipantAuthentication(eprosima::fastrtps::rtps::RTPSParticipant *participant,
-                                     eprosima::fastrtps::rtps::ParticipantAuthenticationInfo &&info) override;
-    template <typename Proxy>
-    void NoteEndpoint(const Proxy &endpoint, bool isRemoved);
+    void OnParticipant(const ParticipantNews &news) override;
+    void OnEndpoint(const EndpointNews &news) override;
+    void onParticipantAuthentication(rtps::RTPSParticipant *participant,
+                                     rtps::ParticipantAuthenticationInfo &&info) override;
     // Called on a thread of the network, also before the participant is complete.
     void Announce();
-    void PeerAppeared(const eprosima::fastrtps::rtps::ParticipantProxyData &peer);
+    void PeerAppeared(const ParticipantNews &peer);
     void PeerGone(const Rtps::GuidPrefix &peer, PeerEvent::Kind how);
     // Name of a Rabit node that is not authenticated yet; empty if unknown. Requires _provenMutex.
     std::string NameOfNewcomer(const Rtps::GuidPrefix &peer) const;
@@ -81,7 +74,7 @@ private:
     // vendor skips ports that another process has.
     const ProcessNumber<SessionCore> _number{0, 1};
     AnnouncementTimer _announceTimer;
-    std::atomic<eprosima::fastrtps::rtps::RTPSParticipant *> _participant = nullptr;
+    std::atomic<rtps::RTPSParticipant *> _participant = nullptr;
 };
 
 }  // namespace Rabit::FastDds
