@@ -18,8 +18,8 @@ const MessageType &TypeOf(const RabitMessage &message);
 template <typename Message>
 const MessageType &TypeOf()
 {
-    static const MessageType &type = TypeOf(Message());
-    return type;
+    static const MessageType *const type = &TypeOf(Message());  // of the class, not of this object
+    return *type;
 }
 
 // The topic of a message.
