@@ -226,6 +226,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     discovery.initial_announcements.period =
         ToDuration(std::min(std::chrono::milliseconds(250), settings.AnnouncementPeriod));
     LimitPeers(attributes);
+    AddProperties(attributes.properties);
     if (settings.Security)
     {
         AddSecurity(*settings.Security, attributes.properties);

@@ -185,6 +185,8 @@ protected:
     }
 };
 
+inline void AddProperties(rtps::PropertyPolicy & /*properties*/) {}
+
 inline Duration Milliseconds(std::uint32_t count)
 {
     return {static_cast<std::int32_t>(count / 1000), count % 1000 * 1'000'000};

@@ -276,6 +276,21 @@ protected:
     }
 };
 
+// Settings with which this version behaves as version 2 and Cyclone DDS do, where they know nothing newer.
+inline void AddProperties(rtps::PropertyPolicy &properties)
+{
+    const std::pair<const char *, const char *> all[] = {
+        // Its service of types has endpoints of its own in each participant. Nodes do not use it.
+        {"fastdds.type_propagation", "disabled"},
+        {"dds.sec.auth.builtin.PKI-DH.preferred_key_agreement", "DH"},
+        {"dds.sec.auth.builtin.PKI-DH.transmit_algorithms_as_legacy", "true"},
+        {"dds.sec.access.builtin.Access-Permissions.transmit_algorithms_as_legacy", "true"}};
+    for (const auto &[name, value] : all)
+    {
+        properties.properties().emplace_back(name, value);
+    }
+}
+
 inline Duration Milliseconds(std::uint32_t count)
 {
     return {static_cast<std::int32_t>(count / 1000), count % 1000 * 1'000'000};
