@@ -1,18 +1,21 @@
 #!/usr/bin/env bash
 # Runs the two commands of the README in a fresh Debian, in which only git is installed, and removes it again.
-#   docker/bare.sh [--ccache FOLDER] RELEASE [COMMAND]   RELEASE: bookworm (Debian 12) or trixie (Debian 13)
+#   docker/bare.sh [--ccache FOLDER] [--keep FOLDER] RELEASE [COMMAND]   RELEASE: bookworm (Debian 12) or trixie (Debian 13)
 # COMMAND is run in a copy of this tree, in place of the two. --ccache: the compiler's cache, for repeated runs; without it
-# all is compiled. Needs root, mmdebstrap and a mirror of Debian. The traffic stays on the loopback of this machine.
+# all is compiled. --keep: the Debian is made in FOLDER/root, with the copy in /rabit, and stays. Needs root, mmdebstrap
+# and a mirror of Debian. The traffic stays on the loopback of this machine.
 # Exit code: that of the first command that fails; 77 if this machine cannot make a root.
 set -euo pipefail
 tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 cache=
-if [ "${1:-}" = --ccache ]; then
-    cache=$(cd "$2" && pwd)
+folder=
+while [ "${1:-}" = --ccache ] || [ "${1:-}" = --keep ]; do
+    given=$(cd "$2" && pwd)
+    if [ "$1" = --ccache ]; then cache=$given; else folder=$given; fi
     shift 2
-fi
-[ $# -eq 1 ] || [ $# -eq 2 ] || { sed -n '2,6s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+done
+[ $# -eq 1 ] || [ $# -eq 2 ] || { sed -n '2,7s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
 release=$1
 command=${2:-./examples/demo.sh --seconds 80 && ./tests/run.sh --quick}
 if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
@@ -20,9 +23,11 @@ if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
     exit 77
 fi
 
-folder=$(mktemp -d --tmpdir "rabit_bare_$release.XXXXXX")
-# The mounts are in a namespace of their own and end with it.
-trap 'rm -rf --one-file-system "$folder"' EXIT
+if [ -z "$folder" ]; then
+    folder=$(mktemp -d --tmpdir "rabit_bare_$release.XXXXXX")
+    # The mounts are in a namespace of their own and end with it.
+    trap 'rm -rf --one-file-system "$folder"' EXIT
+fi
 trap 'exit 130' INT
 trap 'exit 143' TERM
 root=$folder/root

@@ -23,16 +23,16 @@ COLUMNS = ["presence", "mirror >", "mirror <", "queue >", "queue <", "4 MB >", "
 
 
 class Row:
-    """One pair of nodes in a domain of its own."""
+    """One pair of nodes in a domain of its own. `nodes`: how each is started, without its options."""
 
-    def __init__(self, node, first, second, domain):
-        self.node, self.transports, self.domain = node, (first, second), domain
+    def __init__(self, nodes, first, second, domain):
+        self.nodes, self.transports, self.domain = nodes, (first, second), domain
         self.done = set()
         self.failure = None
 
     def start(self, processes, index):
         names = ("first", "second")
-        process = processes.start([self.node, "--node", names[index], "--other", names[1 - index], "--transport",
+        process = processes.start([*self.nodes[index], "--node", names[index], "--other", names[1 - index], "--transport",
                                    self.transports[index], "--domain", self.domain, "--interface", "127.0.0.1",
                                    "--count", ORDERS])
         _, ready = process.wait_for(re.compile(r"ready life=(\d+)").fullmatch, LIMIT_S)
@@ -107,7 +107,7 @@ def main():
     node, transports = sys.argv[1], sys.argv[2:]
     harness.enter_namespace()
     pairs = [(first, second) for first in transports for second in transports]
-    rows = [Row(node, first, second, (harness.domain() + 7 * i) % 200) for i, (first, second) in enumerate(pairs)]
+    rows = [Row(([node], [node]), first, second, (harness.domain() + 7 * i) % 200) for i, (first, second) in enumerate(pairs)]
     threads = [threading.Thread(target=row.run) for row in rows]
     for thread in threads:
         thread.start()

@@ -21,15 +21,15 @@ LIMIT_S = 90
 ORDERS = 100
 
 class Fleet:
-    """Two nodes of a fleet of their own."""
+    """Two nodes of a fleet of their own. `nodes`: how each is started, without its options."""
 
-    def __init__(self, rabit, node, transports, level, domain):
-        self.rabit, self.node, self.transports, self.level, self.domain = rabit, node, transports, level, domain
+    def __init__(self, rabit, nodes, transports, level, domain):
+        self.rabit, self.nodes, self.transports, self.level, self.domain = rabit, nodes, transports, level, domain
         self.failure = None
 
     def start(self, processes, folder, index):
         names = ("first", "second")
-        argv = [self.node, "--node", names[index], "--other", names[1 - index], "--transport", self.transports[index],
+        argv = [*self.nodes[index], "--node", names[index], "--other", names[1 - index], "--transport", self.transports[index],
                 "--domain", self.domain, "--interface", "127.0.0.1", "--count", ORDERS, "--keys",
                 folder / "keys" / names[index]]
         return processes.start(argv + (["--sign"] if self.level == "sign" else []))
@@ -63,7 +63,7 @@ def main():
     fleets = 0
     for _ in range(count):
         for level in ("encrypt", "sign"):
-            row = [Fleet(rabit, node, pair, level, (harness.domain() + 7 * i) % 200) for i, pair in enumerate(pairs)]
+            row = [Fleet(rabit, ([node], [node]), pair, level, (harness.domain() + 7 * i) % 200) for i, pair in enumerate(pairs)]
             threads = [threading.Thread(target=fleet.run) for fleet in row]
             for thread in threads:
                 thread.start()

@@ -1,0 +1,85 @@
+#!/usr/bin/env python3
+"""Nodes of this Debian beside nodes of the other one (12 and 13), over every pair of backends: what interop_test.py and
+secured_pairs_test.py do, the latter at both levels.
+
+Usage: versions_test.py RABIT NODE TRANSPORT...
+Makes a root of the other Debian and builds the node in it, which takes half an hour and more; with RABIT_OTHER_ROOT it
+uses a root that docker/bare.sh has kept. Ends with 77 where it cannot make one, or no network namespace."""
+
+import os
+import pathlib
+import platform
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(HERE), str(HERE.parent / "security"), str(HERE.parents[1] / "integration")]
+import harness  # noqa: E402
+from interop_test import Row, print_table  # noqa: E402
+from secured_pairs_test import Fleet  # noqa: E402
+
+AT_ONCE = 4  # pairs of nodes
+SKIPPED = 77
+OTHER_ROOT = "RABIT_OTHER_ROOT"
+BUILT_NODE = "/rabit/build/release/bin/interop_node"
+RELEASES = {"bookworm": "trixie", "trixie": "bookworm"}
+# The nodes of both roots find their keys under the same names.
+INSIDE = 'mount --rbind /dev "$0/dev"; mount --bind "$1" "$0/tmp"; root=$0; shift; exec chroot "$root" "$@"'
+
+
+def make_root(folder):
+    """Returns the exit code of bare.sh."""
+    release = RELEASES[platform.freedesktop_os_release()["VERSION_CODENAME"]]
+    return subprocess.run([HERE.parents[2] / "docker" / "bare.sh", "--keep", folder, release,
+                           "docker/install-packages.sh && docker/build-preset.sh release interop_node"],
+                          check=False).returncode
+
+
+def run(cases):
+    for i in range(0, len(cases), AT_ONCE):
+        harness.run_at_once(cases[i:i + AT_ONCE])
+    return [f"{case.label}: {case.failure}" for case in cases if case.failure]
+
+
+def labelled(case, label):
+    case.label = label
+    return case
+
+
+def compare(rabit, node, root, transports):
+    here = [node]
+    there = ["unshare", "--mount", "sh", "-ec", INSIDE, root, tempfile.gettempdir(), BUILT_NODE]
+    pairs = [(first, second) for first in transports for second in transports]
+    rows = [labelled(Row(nodes, *pair, 7 * i), f"{pair} {name}")
+            for i, (nodes, pair, name) in enumerate((nodes, pair, name) for pair in pairs for nodes, name in
+                                                    (((here, there), "here, other"), ((there, here), "other, here")))]
+    fleets = [labelled(Fleet(rabit, (here, there), pair, level, 7 * i), f"{pair} here, other {level}")
+              for i, (pair, level) in enumerate((pair, level) for pair in pairs for level in ("encrypt", "sign"))]
+    failures = run(rows)
+    print("By turns the first node is of this Debian, and of the other one:")
+    print_table(rows)
+    failures += run(fleets)
+    print(f"{len(fleets)} fleets with keys, {sum(1 for fleet in fleets if fleet.failure)} failed")
+    print("\n".join(failures))
+    return 1 if failures else 0
+
+
+def main():
+    rabit, node, transports = sys.argv[1], sys.argv[2], sys.argv[3:]
+    if os.geteuid() != 0 or not harness.can_make_namespaces():
+        print("skipped: needs root and network namespaces")
+        sys.exit(SKIPPED)
+    if OTHER_ROOT in os.environ:
+        harness.enter_namespace()
+        sys.exit(compare(rabit, node, os.environ[OTHER_ROOT], transports))
+    with tempfile.TemporaryDirectory(prefix="rabit_versions_") as folder:
+        code = make_root(folder)
+        if code != 0:
+            sys.exit(code)
+        sys.exit(subprocess.run([sys.executable, *sys.argv], env={**os.environ, OTHER_ROOT: f"{folder}/root"},
+                                check=False).returncode)
+
+
+if __name__ == "__main__":
+    main()
