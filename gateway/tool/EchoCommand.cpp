@@ -59,9 +59,12 @@ Found Follow(const std::string &path, Json value)
         else
         {
             std::vector<std::string> names;
-            for (const auto &[name, member] : value.is_object() ? value.items() : Json::object().items())
+            if (value.is_object())
             {
-                names.push_back(name);
+                for (const auto &[name, member] : value.items())
+                {
+                    names.push_back(name);
+                }
             }
             return {{}, "there is no `" + path.substr(0, end) + "`" + NearestWordHint(step, names)};
         }

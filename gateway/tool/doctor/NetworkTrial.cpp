@@ -322,8 +322,9 @@ private:
 
     std::vector<std::uint8_t> TrialOn(std::size_t interface) const
     {
-        std::vector<std::uint8_t> bytes(_id.begin(), _id.end());
-        bytes.push_back(static_cast<std::uint8_t>(interface));
+        std::vector<std::uint8_t> bytes(_id.size() + 1);
+        std::ranges::copy(_id, bytes.begin());
+        bytes.back() = static_cast<std::uint8_t>(interface);
         return bytes;
     }
 

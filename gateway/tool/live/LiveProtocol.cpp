@@ -129,12 +129,11 @@ std::vector<std::uint8_t> MessageData(std::uint32_t subscription, std::uint64_t 
                                       std::span<const std::uint8_t> bytes)
 {
     constexpr std::uint8_t opcode = 0x01;
-    std::vector<std::uint8_t> frame;
-    frame.reserve(MessageDataHeader + bytes.size());
-    frame.push_back(opcode);
-    LittleEndian::Put(subscription, frame);
-    LittleEndian::Put(time, frame);
-    frame.insert(frame.end(), bytes.begin(), bytes.end());
+    std::vector<std::uint8_t> frame(MessageDataHeader + bytes.size());
+    frame[0] = opcode;
+    LittleEndian::Write(subscription, &frame[1]);
+    LittleEndian::Write(time, &frame[1 + sizeof subscription]);
+    std::ranges::copy(bytes, frame.data() + MessageDataHeader);
     return frame;
 }
 
