@@ -22,11 +22,11 @@ PYBIND11_MODULE(_rabit, module)
             }
             catch (const Rabit::ConfigError &error)
             {
-                configError(error.what());
+                PyErr_SetString(configError.ptr(), error.what());
             }
             catch (const Rabit::TransportError &error)
             {
-                configError(error.what());
+                PyErr_SetString(configError.ptr(), error.what());
             }
         });
     module.def("log",
