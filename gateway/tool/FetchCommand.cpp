@@ -292,7 +292,7 @@ void AddFetchCommand(CLI::App &app, Chosen &chosen)
 {
     auto options = std::make_shared<FetchOptions>();
     CLI::App *command = app.add_subcommand("fetch", "Fetch a file of a node, resumed after interruptions");
-    command->add_option("NODE:FILE", options->What, "As uav1:flight.mcap")->required();
+    command->add_option("FILE", options->What, "A file of a node, as uav1:flight.mcap")->required();
     AddCommonOptions(*command, options->Common, 10.0);
     command->add_option("--to", options->To, "Where it is put (default: its name, in this folder)");
     AddExamples(*command, {"rabit fetch uav1:uav1_000042_20261123T024640Z.mcap",
@@ -306,7 +306,7 @@ void AddFetchCommand(CLI::App &app, Chosen &chosen)
             options->File = colon == std::string::npos ? "" : options->What.substr(colon + 1);
             if (options->Node.empty() || options->File.empty() || options->File.size() > 255)
             {
-                throw CLI::ValidationError("NODE:FILE", "expected a node and a file, as uav1:flight.mcap");
+                throw CLI::ValidationError("FILE", "expected a node and a file, as uav1:flight.mcap");
             }
             options->To =
                 options->To.empty() ? std::filesystem::path(options->File).filename().string() : options->To;
