@@ -100,6 +100,8 @@ std::shared_ptr<void> RabitLog::Listen(Sink listener)
     auto shared = std::make_shared<Sink>(std::move(listener));
     LogState &state = State();
     const std::lock_guard<std::mutex> lock(state.Mutex);
+    // Also here: a process that logs nothing would keep those that are gone.
+    std::erase_if(state.Listeners, [](const auto &one) { return one.expired(); });
     state.Listeners.push_back(shared);
     return shared;
 }

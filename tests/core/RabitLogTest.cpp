@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include <malloc.h>
+
 #include <stdexcept>
 #include <string>
 
@@ -59,6 +61,17 @@ TEST(RabitLog, GivesLinesToTheSinkOfTheProgramAndNotToStderr)
         EXPECT_EQ(log.Lines(), std::vector<std::string>{"kept"});
     }
     EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(RabitLog, KeepsNothingOfListenersThatAreGoneThoughNothingIsLogged)
+{
+    const auto bytesInUse = [] { return mallinfo2().uordblks; };
+    const std::size_t before = bytesInUse();
+    for (int i = 0; i < 10000; ++i)
+    {
+        static_cast<void>(RabitLog::Listen([](RabitLogLevel, const std::string &) {}));
+    }
+    EXPECT_LT(bytesInUse(), before + 100000);
 }
 
 TEST(RabitLog, TellsListenersBesideTheSinkForAsLongAsTheyAreKept)
