@@ -1,4 +1,4 @@
-// What a gateway does for each of its networks, and the choice between them.
+// The networks of a gateway: how they are made, and the choice between them.
 #include <algorithm>
 #include <utility>
 

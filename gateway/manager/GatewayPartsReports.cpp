@@ -1,4 +1,4 @@
-// What a gateway tells: Gateway/Fleet, its problems and its log, and reports for nodes that request them.
+// The reports of a gateway: Gateway/Fleet, its problems and its log, and answers to nodes that request reports.
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/GatewayTap.h>
 

@@ -1,5 +1,5 @@
-// The cost of the gateways of a fleet: whole nodes in one process, over a wire that counts, under a clock that
-// the program advances.
+// The cost of the gateways of a fleet: whole nodes in one process, over a wire that counts, under a clock
+// that the program advances.
 //
 // Usage: bench_fleet NODES [idle | flying]. Prints, for one node and second, the samples and bytes that it
 // writes and that arrive. `idle`: all subscribe to the `Note` of `ground` alone, and nobody posts one.

@@ -23,8 +23,8 @@ using TypeCheck = std::function<std::string(const std::string &type)>;
 GatewayConfig LoadGatewayConfig(const std::string &file, const std::string &nodeOverride,
                                 const TypeCheck &whyNoType);
 
-// The same of a text in the form of such a file. `name` stands in errors in place of the file's; empty: errors
-// name no place.
+// The same of a text in the form of such a file. `name` stands in errors in place of the file's; empty:
+// errors name no place.
 GatewayConfig ParseGatewayConfig(const std::string &text, const std::string &name,
                                  const std::string &nodeOverride = "");
 GatewayConfig ParseGatewayConfig(const std::string &text, const std::string &name,
