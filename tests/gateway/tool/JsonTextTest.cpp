@@ -1,4 +1,4 @@
-#include "Output.h"
+#include "JsonText.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-TEST(Output, NumbersStayNumbersHoweverLarge)
+TEST(JsonText, NumbersStayNumbersHoweverLarge)
 {
-    EXPECT_EQ(Output::JsonText(Json{0, -1, 1.5e300, INT64_MIN, UINT64_MAX, nullptr, true, "9"}),
+    EXPECT_EQ(JsonText(Json{0, -1, 1.5e300, INT64_MIN, UINT64_MAX, nullptr, true, "9"}),
               R"([0,-1,1.5e+300,-9223372036854775808,18446744073709551615,null,true,"9"])");
 }
 
