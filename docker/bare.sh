@@ -10,12 +10,17 @@ tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 
 cache=
 folder=
+usage() {
+    sed -n '2,7s/^# \?//p' "${BASH_SOURCE[0]}" >&2
+    exit 2
+}
 while [ "${1:-}" = --ccache ] || [ "${1:-}" = --keep ]; do
+    [ $# -ge 2 ] || usage
     given=$(cd "$2" && pwd)
     if [ "$1" = --ccache ]; then cache=$given; else folder=$given; fi
     shift 2
 done
-[ $# -eq 1 ] || [ $# -eq 2 ] || { sed -n '2,7s/^# \?//p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+[ $# -eq 1 ] || [ $# -eq 2 ] || usage
 release=$1
 command=${2:-./examples/demo.sh --seconds 80 && ./tests/run.sh --quick}
 if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then

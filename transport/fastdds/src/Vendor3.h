@@ -4,6 +4,9 @@
 namespace Rabit::FastDds
 {
 
+// True if nodes with keys meet those of other versions and of Cyclone DDS.
+inline constexpr bool MeetsOthersWithKeys = false;
+
 class ParticipantEvents : public rtps::RTPSParticipantListener
 {
 protected:
