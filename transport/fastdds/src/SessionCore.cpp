@@ -114,8 +114,9 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
         }
         if constexpr (!MeetsOthersWithKeys)
         {
-            Log()->Line("this version of Fast DDS meets no other version with keys, nor Cyclone DDS: "
-                        "`transport: cyclonedds` meets all");
+            Log()->Line(
+                "this version of Fast DDS meets no other version with keys, nor Cyclone DDS: "
+                "`transport: cyclonedds` meets all");
         }
     }
 }
