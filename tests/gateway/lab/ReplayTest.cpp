@@ -221,7 +221,8 @@ TEST_F(ReplayTest, TheBudgetOfTheConfigurationHoldsUnlessAnotherIsGiven)
 TEST_F(ReplayTest, OfSeveralPathsTheFirstIsFlown)
 {
     Pair(5,
-         "node: uav\npaths: [{name: mesh, interfaces: [mesh0], radio: {budget: 1500B/s}}, {name: modem}]\n"
+         "node: uav\npaths: [{name: mesh, interfaces: [mesh0], radio: {budget: 1500B/s}}, {name: modem, "
+         "interfaces: [modem0]}]\n"
          "security: {keys: /nowhere}\nrecord: {folder: /nowhere}\n")
         .Save(Path());
     const Recording recording({Path()});
