@@ -1,4 +1,4 @@
-"""What a node knows of the others."""
+"""The other nodes, as a node knows them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Fleet:
 
     @property
     def problems(self) -> list[Any]:
-        """What is wrong, each with `subject` and `reason`."""
+        """The problems that keep data from flowing, each with `subject` and `reason`."""
         return list(self.value.problems)
 
     def __getitem__(self, node: str) -> Any:

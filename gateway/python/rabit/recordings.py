@@ -71,7 +71,7 @@ class Recording:
 
     @property
     def problems(self) -> list[str]:
-        """What of the file cannot be read, one line each."""
+        """The parts of the file that cannot be read, one line each."""
         return list(self._file.problems)
 
     def __iter__(self) -> Iterator[Recorded]:

@@ -18,7 +18,7 @@ STRING = "module std_msgs { module msg { @final struct String { string data; }; 
 
 
 def make_keys(folder, network):
-    """Of a fleet of two, and of another authority."""
+    """Makes the keys of a fleet of two nodes, and of a node that another authority admits."""
     made = {}
     for fleet in ("own", "other"):
         subprocess.run([TOOL, "keys", "init", folder / fleet], check=True, stdout=subprocess.DEVNULL)
