@@ -11,6 +11,7 @@ import itertools
 import logging
 import os
 import random
+import select
 import signal
 import threading
 import time
@@ -154,7 +155,7 @@ def interrupted(idl, transport):
 
 
 def in_fork(function):
-    """Runs it in a forked process, which must end well."""
+    """Runs it in a forked process, which must end well within a minute."""
     child = os.fork()
     if child == 0:
         code = 1
@@ -163,7 +164,11 @@ def in_fork(function):
             code = 0
         finally:
             os._exit(code)
-    assert os.waitpid(child, 0)[1] == 0
+    with open(os.pidfd_open(child), closefd=True) as ended:
+        has_ended = select.select([ended], [], [], 60)[0]
+    if not has_ended:
+        os.kill(child, signal.SIGKILL)
+    assert os.waitpid(child, 0)[1] == 0 and has_ended
 
 
 def forked(idl, transport):
@@ -183,7 +188,7 @@ def forked(idl, transport):
 
 
 def left():
-    """What this process holds: files, threads, and kB of memory."""
+    """Returns the files, threads and kB of memory that this process holds."""
     gc.collect()
     with open("/proc/self/statm") as file:
         memory = int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") // 1000
@@ -216,7 +221,10 @@ def test_nothing_is_left_of_nodes_that_came_and_went(idl, tmp_path):
             print(*seen[-1], flush=True)
     warm = seen[len(seen) // 3]
     count = seen[-1][0] - warm[0]
-    print(f"{count} nodes in {time.monotonic() - begin:.0f} s, (files, threads, kB) from {warm[1:]} to {seen[-1][1:]}")
-    assert seen[-1][1:3] <= warm[1:3]
-    # Allocators keep a little. One node that stayed would be more than 100 kB.
-    assert seen[-1][3] - warm[3] < 5000 + 2 * count
+    print(f"{seen[-1][0]} nodes in {time.monotonic() - begin:.0f} s; in the last {count} of them (files, threads, kB) went from "
+          f"{warm[1:]} to {seen[-1][1:]}")
+    (files, threads, memory), (warm_files, warm_threads, warm_memory) = seen[-1][1:], warm[1:]
+    assert files <= warm_files
+    assert threads <= warm_threads
+    # Allocators keep a little: up to 1600 kB were measured after 100 nodes, and 2200 kB after 7400.
+    assert memory - warm_memory < 3000 + count / 4
