@@ -4,7 +4,7 @@
 
     def test_the_fleet_survives_a_crash(lab):
         flight = lab.fly("crash.yaml")
-        assert flight.recording().to_pandas("ground.Gateway/Fleet").size > 0
+        assert flight.recording().to_pandas("ground/Gateway/Fleet").size > 0
 
 A test is skipped where the machine allows no namespaces.
 """
@@ -16,6 +16,7 @@ import json
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 from collections.abc import Mapping
 from typing import Any
@@ -63,11 +64,11 @@ class Flight:
         return (self.folder / "log.txt").read_text(encoding="utf-8", errors="replace")
 
     def recording(self) -> Recording:
-        """What all nodes posted and received, on one time line."""
+        """Returns the posts and receipts of all nodes, on one time line."""
         return open(self.folder / "flight.mcap")
 
     def verdict(self, expected: str) -> Verdict:
-        """That of the expectation which begins with this text."""
+        """Returns the verdict on the expectation that begins with this text."""
         for verdict in self.verdicts:
             if verdict.expected.startswith(expected):
                 return verdict
@@ -126,12 +127,15 @@ def _verdict_of(line: str) -> Verdict:
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.getgroup("rabit").addoption(
         "--lab-results", metavar="FOLDER", help="the results of flights in the lab stay there, in a folder for each test"
+        " that its next run replaces"
     )
 
 
 @pytest.fixture
 def lab(request: pytest.FixtureRequest, tmp_path: pathlib.Path) -> Lab:
     """Flies scenarios of `rabit lab`."""
-    wanted = request.config.getoption("--lab-results")
-    folder = pathlib.Path(wanted).resolve() / re.sub(r"[^\w.-]+", "_", request.node.nodeid) if wanted else tmp_path
+    folder = tmp_path
+    if wanted := request.config.getoption("--lab-results"):
+        folder = pathlib.Path(wanted).resolve() / re.sub(r"[^\w.-]+", "_", request.node.nodeid)
+        shutil.rmtree(folder, ignore_errors=True)  # the results of the run before
     return Lab(folder, request.path.parent)

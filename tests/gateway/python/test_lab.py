@@ -24,7 +24,7 @@ with rabit.Node("planner", domain=7, publish={{"Plan": idl.Uav.Pose}}) as node:
 
 
 def results(folder, test, *options):
-    """Of pytest with a test that uses the plugin, in a folder: its exit code, and what it says."""
+    """Runs pytest with a test that uses the plugin, in a folder. Returns its exit code and its output."""
     (folder / "conftest.py").write_text('pytest_plugins = ["rabit.lab"]\n')
     (folder / "test_flight.py").write_text(textwrap.dedent(test))
     done = subprocess.run([sys.executable, "-m", "pytest", "-rs", "-q", "-p", "no:cacheprovider", *options, folder],
@@ -50,7 +50,8 @@ def test_a_scenario_is_flown_and_its_recording_is_read(tmp_path):
             }})
             assert flight.passed and flight.verdict("all up").met
             assert "planner" in flight.log and flight.report.exists()
-            assert {{"uav1.Pose", "planner.Plan"}} <= {{topic.name.replace("/", ".") for topic in flight.recording().topics}}
+            assert {{"uav1/Pose", "planner/Plan"}} <= {{topic.name for topic in flight.recording().topics}}
+            assert flight.recording().to_pandas("planner/Gateway/Fleet").size > 0
         """, "--lab-results", tmp_path / "results")
     assert code == 0, said
     assert list(tmp_path.glob("results/*test_flight/flight1/junit.xml"))
@@ -64,6 +65,20 @@ def test_an_expectation_that_is_not_met_fails_the_test(tmp_path):
             lab.fly("flight.yaml")
         """)
     assert code == 1 and "\nnot met: no node ends by itself: one ended by itself" in said, said
+
+
+def test_a_second_run_replaces_the_results_of_the_first(tmp_path):
+    (tmp_path / "flight.yaml").write_text("nodes: {one: {command: [sleep, 20], plain: true}}\nrun: 1s\nexpect: []\n")
+    flight = """
+        def test_flight(lab):
+            lab.fly("flight.yaml", check=False)
+        """
+    for _ in range(2):
+        code, said = results(tmp_path, flight, "--lab-results", tmp_path / "results")
+        assert code == 0, said
+        (folder,) = tmp_path.glob("results/*/*/")
+        assert folder.name == "flight1" and not (folder / "mark").exists()
+        (folder / "mark").touch()
 
 
 def test_a_wrong_scenario_is_an_error_with_its_line(tmp_path):
