@@ -6,7 +6,6 @@ import asyncio
 import atexit
 import json
 import os
-import threading
 import weakref
 from collections.abc import Iterable, Mapping
 from types import TracebackType
@@ -16,7 +15,7 @@ from . import _async, _rabit
 from ._fleet import Fleet
 from ._manager import Manager
 from ._messages import Message
-from ._streams import Queue, Receipt, Subscription
+from ._streams import Handlers, Queue, Receipt, Subscription
 
 _running: weakref.WeakSet[Node] = weakref.WeakSet()
 
@@ -55,11 +54,11 @@ class Node:
         text = json.dumps({key: value for key, value in given.items() if value != []}, default=_plain)
         self._core = _rabit.NodeCore(os.fspath(config), name, text, set(settings))
         self._queues: dict[str, Queue] = {}
-        self._threads: list[threading.Thread] = []
+        self._handlers = Handlers()
         self._managers: list[Manager] = []
         self._outcomes = _async.OutcomeLoop(self._core)
         for queue in self._core.accepts:
-            self._queues[queue] = Queue(self._core.add_queue(queue, queue_capacity), self._threads)
+            self._queues[queue] = Queue(self._core.add_queue(queue, queue_capacity), self._handlers)
         for library in libraries:
             self._core.add_library(os.fspath(library))
         for manager in managers:
@@ -97,10 +96,7 @@ class Node:
         if not self._core.stop():
             return
         _running.discard(self)
-        handlers = list(self._threads)
-        if threading.current_thread() not in handlers:  # two handlers that wait for each other would never end
-            for thread in handlers:
-                thread.join()
+        self._handlers.join()
 
     def __enter__(self) -> Node:
         self.start()
@@ -127,7 +123,7 @@ class Node:
         (`Pose`), also of foreign topics. `type` is the class of the message."""
         pattern, slash, rest = message.partition("/")
         core = self._core.subscribe(pattern if slash else "", rest if slash else message, _type_of(type))
-        return Subscription(core, self._threads)
+        return Subscription(core, self._handlers)
 
     def queue(self, name: str) -> Queue:
         """The queue of that name, which is among those that the node accepts."""
@@ -173,7 +169,7 @@ def _entries(entries: Any, key: str, rest: Any) -> list[dict[str, Any]]:
 
 
 def _plain(value: Any) -> Any:
-    """What a configuration file has in place of the value."""
+    """Returns the text that a configuration file has in place of the value."""
     if isinstance(value, type):
         return _type_of(value).name
     if isinstance(value, os.PathLike):

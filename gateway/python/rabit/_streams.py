@@ -1,4 +1,4 @@
-"""What comes to a node: values of messages, and messages for its queues."""
+"""Streams that come to a node: values of messages, and messages for its queues."""
 
 from __future__ import annotations
 
@@ -24,13 +24,42 @@ class Outcome(enum.IntEnum):
         return f"Outcome.{self.name}"
 
 
+class Handlers:
+    """The threads of a node's handlers."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._threads: set[threading.Thread] = set()
+
+    def start(self, run: Callable[[], None], name: str) -> None:
+        def run_to_end() -> None:
+            try:
+                run()
+            finally:
+                with self._lock:
+                    self._threads.discard(threading.current_thread())
+
+        thread = threading.Thread(target=run_to_end, name=name, daemon=True)
+        with self._lock:
+            thread.start()
+            self._threads.add(thread)
+
+    def join(self) -> None:
+        """Waits for their ends. In one of them it returns at once: two that wait for each other would never end."""
+        with self._lock:
+            threads = set(self._threads)
+        if threading.current_thread() not in threads:
+            for thread in threads:
+                thread.join()
+
+
 class _Stream:
     """One after the other: `for`, `async for`, `get`, or a handler on a thread of its own."""
 
-    def __init__(self, core: Any, threads: list[threading.Thread]) -> None:
+    def __init__(self, core: Any, handlers: Handlers) -> None:
         self._core = core
         self._readable = _async.Readable(core)
-        self._threads = threads  # those of the handlers of a node
+        self._handlers = handlers
         self._has_handler = False
 
     @property
@@ -77,23 +106,18 @@ class _Stream:
         the next one is handled. Also as a decorator. To be used once."""
         if self._has_handler:
             raise RuntimeError(f"{self.name} has a handler already")
+        self._handlers.start(lambda: self._run(handler), f"rabit {self.name}")
         self._has_handler = True
-        thread = threading.Thread(target=self._run, args=(handler,), name=f"rabit {self.name}", daemon=True)
-        self._threads.append(thread)
-        thread.start()
         return handler
 
     def _run(self, handler: Callable[[Any], object]) -> None:
-        try:
-            for item in self:
-                try:
-                    handler(item)
-                except Exception:
-                    kind, value, trace = sys.exc_info()
-                    assert kind is not None and value is not None
-                    _log.exception(f"handler of {self.name}", kind, value, trace)
-        finally:
-            self._threads.remove(threading.current_thread())
+        for item in self:
+            try:
+                handler(item)
+            except Exception:
+                kind, value, trace = sys.exc_info()
+                assert kind is not None and value is not None
+                _log.exception(f"handler of {self.name}", kind, value, trace)
 
     def close(self) -> None:
         """Nothing comes any more."""
@@ -142,7 +166,7 @@ class Receipt:
 
     @property
     def counts(self) -> dict[Outcome, int]:
-        """Of a message to `*/Queue`: how many nodes have which outcome."""
+        """The number of nodes that have each outcome, for a message to `*/Queue`."""
         return {outcome: count for outcome, count in zip(Outcome, self._core.counts)}
 
     def wait(self, timeout: float | None = None) -> Outcome:

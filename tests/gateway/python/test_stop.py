@@ -3,6 +3,7 @@
 import logging
 import os
 import select
+import threading
 
 import pytest
 
@@ -11,7 +12,7 @@ from conftest import program, run
 
 
 def end_of(network, text, **more):
-    """What the program prints, whose end is not waited for longer than a minute."""
+    """Returns the output of the program, which ends within a minute."""
     with run(program(network, text), **more) as child:
         try:
             out, errors = child.communicate(timeout=60)
@@ -104,6 +105,21 @@ def test_a_manager_may_stop_its_node_before_start_returns(one_network):
         print("ended")
         """, env={**os.environ, "LD_PRELOAD": os.environ["RABIT_HELD"]})
     assert out == "ended\n"
+
+
+def test_a_node_ends_whose_handler_got_no_thread(idl, one_network, monkeypatch):
+    with rabit.Node("planner", **one_network) as node:
+        poses = node.subscribe("Pose", idl.Uav.Pose)
+        with monkeypatch.context() as patch, pytest.raises(RuntimeError, match="no thread"):
+            def refuse(thread):
+                raise RuntimeError("no thread")
+
+            patch.setattr(threading.Thread, "start", refuse)
+            poses.on(print)
+        heard = threading.Event()
+        poses.on(lambda pose: heard.set())
+        node.post("Pose", idl.Uav.Pose())
+        assert heard.wait(30)
 
 
 def test_handlers_that_stop_their_node_do_not_wait_for_each_other(one_network):
