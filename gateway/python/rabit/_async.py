@@ -22,8 +22,8 @@ class _Waiters:
     """Futures of one event loop, which reads the file descriptor while there are any, and no longer: a loop keeps alive
     what it reads for."""
 
-    def __init__(self, fd: int, on_ready: Callable[[], None]) -> None:
-        self._fd = fd
+    def __init__(self, fd: Callable[[], int], on_ready: Callable[[], None]) -> None:
+        self._fd = fd  # made when it is first asked for
         self._on_ready = on_ready
         self._loop: asyncio.AbstractEventLoop | None = None
         self.futures: set[asyncio.Future[None]] = set()
@@ -34,7 +34,7 @@ class _Waiters:
         if self._loop is not loop:
             if self._loop is not None and not self._loop.is_closed():
                 raise RuntimeError("another event loop waits here already")
-            loop.add_reader(self._fd, self._on_ready)
+            loop.add_reader(self._fd(), self._on_ready)
             self._loop = loop
             self.futures = set()
         future: asyncio.Future[None] = loop.create_future()
@@ -46,7 +46,7 @@ class _Waiters:
             if not self.futures and self._loop is loop:
                 self._loop = None
                 if not loop.is_closed():
-                    loop.remove_reader(self._fd)
+                    loop.remove_reader(self._fd())
 
 
 def _finish(futures: set[asyncio.Future[None]]) -> None:
@@ -60,7 +60,7 @@ class Readable:
 
     def __init__(self, core: Any) -> None:
         self._core = core
-        self._waiters = _Waiters(core.fd, self._on_ready)
+        self._waiters = _Waiters(lambda: int(core.fd), self._on_ready)
 
     async def wait(self) -> None:
         """Returns when the core is ready, or may be."""
@@ -79,7 +79,7 @@ class OutcomeLoop:
 
     def __init__(self, core: Any) -> None:
         self._core = core
-        self._waiters = _Waiters(core.outcomes_fd, self._on_known)
+        self._waiters = _Waiters(lambda: int(core.outcomes_fd), self._on_known)
         self._by_receipt: dict[int, set[asyncio.Future[None]]] = {}
 
     async def wait(self, receipt: Any) -> None:

@@ -21,34 +21,47 @@ constexpr double LongestSleep = 0.2;
 
 }  // namespace
 
-Waitable::Waitable() : _fd(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK))
+Waitable::Event::~Event()
 {
-    if (_fd < 0)
+    if (_fd >= 0)
     {
-        throw std::system_error(errno, std::generic_category(), "eventfd");
+        close(_fd);
     }
 }
 
-Waitable::~Waitable()
+int Waitable::Event::Fd()
 {
-    close(_fd);
+    if (_fd < 0)
+    {
+        const int made = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+        if (made < 0)
+        {
+            return made;
+        }
+        _fd = made;
+        if (_isClosed)
+        {
+            Write();
+        }
+    }
+    return _fd;
 }
 
-void Waitable::Notify()
+void Waitable::Event::Notify()
 {
-    if (_armed.exchange(false))
+    if (_isArmed.exchange(false))
     {
         Write();
     }
 }
 
-void Waitable::Write()
+void Waitable::Event::Write()
 {
     const std::uint64_t one = 1;
     static_cast<void>(!write(_fd, &one, sizeof one));
 }
 
-void Waitable::Drain()
+void Waitable::Event::Drain()
 {
     std::uint64_t count = 0;
     static_cast<void>(!read(_fd, &count, sizeof count));
@@ -58,19 +71,42 @@ void Waitable::Drain()
     }
 }
 
-void Waitable::Close()
+void Waitable::Event::Close()
 {
     _isClosed = true;
     Write();
+}
+
+int Waitable::Fd()
+{
+    const int fd = _loop.Fd();
+    if (fd < 0)
+    {
+        throw std::system_error(errno, std::generic_category(), "eventfd");
+    }
+    return fd;
+}
+
+void Waitable::Notify()
+{
+    _threads.Notify();
+    _loop.Notify();
+}
+
+void Waitable::Close()
+{
+    _threads.Close();
+    _loop.Close();
 }
 
 bool Waitable::Wait(std::optional<double> seconds, const std::function<bool()> &isReady)
 {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
+    const int fd = _threads.Fd();
     for (;;)
     {
-        Arm();
+        _threads.Arm();
         if (isReady())
         {
             return true;
@@ -83,13 +119,13 @@ bool Waitable::Wait(std::optional<double> seconds, const std::function<bool()> &
         }
         {
             const pybind11::gil_scoped_release released;
-            pollfd waited{_fd, POLLIN, 0};
+            pollfd waited{fd, POLLIN, 0};
             const auto sleep = std::chrono::duration<double>(std::min(left, LongestSleep));
             const auto nanoseconds = std::chrono::duration_cast<std::chrono::nanoseconds>(sleep).count();
             const timespec limit{nanoseconds / 1000000000, nanoseconds % 1000000000};
             ppoll(&waited, 1, &limit, nullptr);
         }
-        Drain();
+        _threads.Drain();
         if (PyErr_CheckSignals() != 0)
         {
             throw pybind11::error_already_set();

@@ -10,33 +10,53 @@
 namespace Rabit::Python
 {
 
-// An eventfd (eventfd(2)) that is written to only while somebody waits. The waiting side: Arm, look once
-// more whether there is something, then wait until Fd is readable, then Drain.
+// Wakes threads of Python in Wait, and one event loop, which waits until Fd is readable. Each kind has an
+// eventfd (eventfd(2)) of its own, so that none takes a wake-up from the other. It is made when it is first
+// needed, and written to only while somebody waits.
+//
+// The event loop: take Fd, Arm, look once more whether there is something, wait until Fd is readable, then
+// Drain.
 class Waitable
 {
 public:
-    Waitable();
-    ~Waitable();
-    Waitable(const Waitable &) = delete;
-    Waitable &operator=(const Waitable &) = delete;
-
-    int Fd() const { return _fd; }
-    void Arm() { _armed = true; }
+    // With the GIL. Throws std::system_error if the process has no more file descriptors.
+    int Fd();
+    void Arm() { _loop.Arm(); }
+    void Drain() { _loop.Drain(); }
     // Any thread; takes a microsecond, and no lock.
     void Notify();
-    void Drain();
-    // Like Notify, and from now on Fd stays readable: a thread that drains it takes the end from nobody.
+    // Like Notify, and from now on Fd stays readable, and Wait never sleeps.
     void Close();
     // Waits without the GIL until `isReady` (called with the GIL) returns true. False after so many seconds;
     // empty: waits for ever. Signals are handled meanwhile, so Ctrl-C ends it with KeyboardInterrupt.
     bool Wait(std::optional<double> seconds, const std::function<bool()> &isReady);
 
 private:
-    void Write();
+    class Event
+    {
+    public:
+        Event() = default;
+        ~Event();
+        Event(const Event &) = delete;
+        Event &operator=(const Event &) = delete;
 
-    const int _fd;
-    std::atomic<bool> _armed{false};
-    std::atomic<bool> _isClosed{false};
+        // Negative if the process has no more file descriptors: Wait then looks five times a second.
+        int Fd();
+        void Arm() { _isArmed = true; }
+        void Notify();
+        void Drain();
+        void Close();
+
+    private:
+        void Write();
+
+        std::atomic<int> _fd{-1};  // none yet; nobody waits
+        std::atomic<bool> _isArmed{false};
+        std::atomic<bool> _isClosed{false};
+    };
+
+    Event _threads;
+    Event _loop;
 };
 
 }  // namespace Rabit::Python

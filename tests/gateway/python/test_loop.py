@@ -1,9 +1,10 @@
-"""What an event loop waits for: outcomes, and streams."""
+"""An event loop waits for outcomes and streams."""
 
 import asyncio
 import contextlib
 import gc
 import os
+import select
 import time
 
 import pytest
@@ -153,3 +154,14 @@ def test_a_node_that_stops_ends_the_waits_of_an_event_loop(idl, one_network):
         assert await asyncio.wait_for(asyncio.gather(*tasks), 30) == [[], []]
 
     asyncio.run(main())
+
+
+def test_a_thread_that_waits_leaves_the_event_loop_its_wake_up(idl, one_network):
+    with rabit.Node("planner", accept={"Commands": [idl.Uav.Goto]}, **one_network) as node:
+        core = node.queue("Commands")._core
+        assert core.fd
+        core.arm()
+        node.send("Commands", idl.Uav.Goto())
+        assert core.take()
+        assert not core.wait(0.01)
+        assert select.select([core.fd], [], [], 0)[0]
