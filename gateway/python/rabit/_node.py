@@ -86,7 +86,12 @@ class Node:
                 "or `multiprocessing.get_context('spawn')`, or before the first node starts"
             )
         _running.add(self)  # first, so that a Ctrl-C in between leaves no node that nobody ends
-        self._core.start()
+        try:
+            self._core.start()
+        except BaseException:
+            if not self._core.has_threads:
+                _running.discard(self)
+            raise
 
     def stop(self) -> None:
         """Leaves the network. Messages without an outcome get one, and all iterations end.

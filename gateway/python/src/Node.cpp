@@ -153,25 +153,32 @@ void Node::Start()
     {
         throw std::runtime_error("the node `" + Name() + "` runs already");
     }
-    ValidateTransportName(_config, AvailableTransports(), KnownTransports());
-    if (_config.Record)
+    // All that may throw comes first, and touches a copy: a start that failed leaves nothing behind.
+    GatewayConfig config = _config;
+    ValidateTransportName(config, AvailableTransports(), KnownTransports());
+    std::unique_ptr<RecorderManager> recorder;
+    if (config.Record)
     {
-        auto recorder = std::make_unique<RecorderManager>(_config, parts.Workspace);
-        parts.Recorder = recorder.get();
-        parts.Reactor->AddManager(std::move(recorder));
+        recorder = std::make_unique<RecorderManager>(config, parts.Workspace);
     }
-    if (BackfillManager::IsUsed(_config))
+    std::unique_ptr<BackfillManager> backfill;
+    if (BackfillManager::IsUsed(config))
     {
-        parts.Reactor->AddManager(
-            std::make_unique<BackfillManager>(_config, parts.Recorder, parts.Workspace));
+        backfill = std::make_unique<BackfillManager>(config, recorder.get(), parts.Workspace);
     }
-    _config.Tap = std::make_shared<ReasonTap>(_config.Tap);
+    config.Tap = std::make_shared<ReasonTap>(config.Tap);
     auto gateway =
-        std::make_unique<GatewayManager>(_config, TransportsOf(_config, MakeTransport), parts.Workspace);
+        std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport), parts.Workspace);
+    std::promise<void> ready;
+    parts.Runner = std::thread([&parts, name = Name(), isReady = ready.get_future()]() mutable
+                               { RunReactor(parts, name, std::move(isReady)); });
     FleetExplorer &explorer = gateway->Explorer();
     explorer.SetOnChange([&parts] { AttachAll(parts); });
+    parts.Recorder = recorder.get();
+    parts.Reactor->AddManager(std::move(recorder));
+    parts.Reactor->AddManager(std::move(backfill));
     parts.Reactor->AddManager(std::move(gateway));
-    parts.Workspace.AddPublishSubscribeMessage(FleetMessageNameOf(_config), parts.Fleet);
+    parts.Workspace.AddPublishSubscribeMessage(FleetMessageNameOf(config), parts.Fleet);
     parts.Reactor->SetHandleSignals(false);
     {
         // Before the managers run, since one may stop the node at once.
@@ -183,13 +190,14 @@ void Node::Start()
         parts.Explorer = &explorer;
         parts.HasStarted = true;
     }
-    parts.Runner = std::thread([&parts, name = Name()] { RunReactor(parts, name); });
+    ready.set_value();
 }
 
-void Node::RunReactor(Parts &parts, const std::string &name)
+void Node::RunReactor(Parts &parts, const std::string &name, std::future<void> isReady)
 {
     try
     {
+        isReady.get();
         parts.Reactor->Run();
     }
     catch (const std::exception &error)

@@ -10,6 +10,7 @@
 #include <sys/types.h>
 
 #include <atomic>
+#include <future>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -52,7 +53,9 @@ public:
 
     const GatewayConfig &Config() const { return _config; }
     std::string Name() const { return _config.Node; }
-    bool IsRunning() const { return _parts && _parts->HasStarted && !_parts->IsEnding; }
+    bool IsRunning() const { return HasThreads() && !_parts->IsEnding; }
+    // Started, and not yet ended.
+    bool HasThreads() const { return _parts && _parts->HasStarted; }
 
     // Before Start. The name of a Python manager's own queue is its name.
     std::shared_ptr<InboundQueue> AddQueue(const std::string &name, int capacity);
@@ -61,7 +64,7 @@ public:
     // extern "C" void rabit_add_managers(RabitReactor &, GatewayConfig &, RabitWorkspace &).
     void AddLibrary(const std::string &path);
 
-    // Throws ConfigError.
+    // Throws ConfigError, and std::system_error without a thread. After that it may be called again.
     void Start();
     // Leaves the network. Messages without an outcome get one. False in a manager of this node, which cannot
     // wait for its own end: then the streams and the managers are told to end, and the next Stop, in another
@@ -113,7 +116,8 @@ private:
     void SetExpiry(const std::string &address, double seconds);
     static void AttachAll(Parts &parts);
     static void CloseStreams(Parts &parts);
-    static void RunReactor(Parts &parts, const std::string &name);
+    // On a thread of its own, once the managers are ready.
+    static void RunReactor(Parts &parts, const std::string &name, std::future<void> isReady);
     bool IsForeign(const std::string &name) const;
 
     GatewayConfig _config;

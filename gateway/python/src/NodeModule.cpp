@@ -194,6 +194,7 @@ void DefineNode(py::module_ &module)
                       { return std::make_shared<Node>(ConfigOf(file, node, text, given)); }))
         .def_property_readonly("name", &Node::Name)
         .def_property_readonly("is_running", &Node::IsRunning)
+        .def_property_readonly("has_threads", &Node::HasThreads)
         .def_property_readonly("accepts",
                                [](const Node &self)
                                {

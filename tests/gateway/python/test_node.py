@@ -1,4 +1,4 @@
-"""What a node promises beside the exchange itself."""
+"""Promises of a node beside the exchange itself."""
 
 import asyncio
 import logging
@@ -306,6 +306,42 @@ def test_a_process_that_was_forked_without_nodes_may_have_its_own(one_network):
     with run(program(one_network, text)) as child:
         out, errors = child.communicate(timeout=60)
         assert (child.returncode, sorted(out.split())) == (0, ["child", "parent"]), errors
+
+
+def test_a_process_that_was_forked_after_a_start_that_failed_may_have_its_own_nodes(one_network):
+    text = """
+        wrong = rabit.Node("planner", **{**network, "transport": "none"})
+        try:
+            wrong.start()
+        except rabit.ConfigError:
+            print("failed", flush=True)
+        child = os.fork()
+        if child == 0:
+            with rabit.Node("other", **network) as own:
+                assert own.flush(10)
+            sys.exit(0)
+        assert os.waitpid(child, 0)[1] == 0
+        """
+    with run(program(one_network, text)) as child:
+        out, errors = child.communicate(timeout=60)
+        assert (child.returncode, out) == (0, "failed\n"), errors
+
+
+@pytest.mark.skipif("cyclonedds" not in rabit.transports(), reason="the file is one of Cyclone DDS")
+def test_a_node_that_is_started_again_after_a_wrong_configuration_records_once(idl, one_network, tmp_path):
+    file = tmp_path / "cyclone.xml"
+    node = rabit.Node("planner", publish={"Pose": idl.Uav.Pose}, record={"folder": str(tmp_path / "flights")},
+                      backend_config=str(file), **{**one_network, "transport": "cyclonedds"})
+    for _ in range(2):
+        with pytest.raises(rabit.ConfigError, match="cyclone.xml"):
+            node.start()
+    file.write_text("<CycloneDDS/>")
+    with node:
+        node.post("Pose", idl.Uav.Pose(number=1))
+        assert node.flush(30)
+    recordings = list((tmp_path / "flights").glob("*.mcap"))
+    assert len(recordings) == 1
+    assert [message.value.number for message in rabit.open(*recordings).messages("planner/Pose")] == [1]
 
 
 def test_iterations_end_when_the_node_stops(idl, one_network):

@@ -84,27 +84,58 @@ def test_threads_and_an_event_loop_that_wait_for_one_stream_all_hear_of_its_end(
         assert select.select([core.fd], [], [], 0)[0]
 
 
-@pytest.mark.skipif("RABIT_HELD" not in os.environ, reason="RABIT_HELD is not set")
 def test_a_manager_may_stop_its_node_before_start_returns(one_network):
-    """RABIT_HELD: a library that holds up the thread that starts the node until the manager has stopped it."""
     out = end_of(one_network, """
-        import ctypes
-        held = ctypes.CDLL(None)
+        stopped = threading.Event()
 
         class Once(rabit.Manager):
             def unit_of_work(self):
                 self.node.stop()
-                held.go_on()
+                stopped.set()
+
+        class Late:
+            def __init__(self, core):
+                self._core = core
+            def __getattr__(self, name):
+                return getattr(self._core, name)
+            def start(self):
+                self._core.start()
+                assert stopped.wait(30)
 
         node = rabit.Node("planner", managers=[Once()], **network)
-        held.hold_creator()
+        node._core = Late(node._core)
         with node:
             assert not node.is_running
             for pose in node.subscribe("uav*/Pose", idl.Uav.Pose):
                 pass
         print("ended")
-        """, env={**os.environ, "LD_PRELOAD": os.environ["RABIT_HELD"]})
+        """)
     assert out == "ended\n"
+
+
+@pytest.mark.skipif("RABIT_REFUSED" not in os.environ, reason="RABIT_REFUSED is not set")
+def test_a_node_whose_start_gets_a_thread_too_few_is_started_later(one_network):
+    """RABIT_REFUSED: a library that refuses the last thread that the start makes."""
+    out = end_of(one_network, """
+        import ctypes
+        library, many = ctypes.CDLL(None), 1000
+        other = rabit.Node("planner", **network)
+        library.refuse_thread(many)
+        other.start()
+        threads = many - library.refuse_thread(0)
+        other.stop()
+
+        node = rabit.Node("planner", **network)
+        library.refuse_thread(threads)
+        try:
+            node.start()
+        except RuntimeError as error:
+            print(error)
+        assert not node.is_running
+        with node:
+            assert node.flush(30)
+        """, env={**os.environ, "LD_PRELOAD": os.environ["RABIT_REFUSED"]})
+    assert out == "Resource temporarily unavailable\n"
 
 
 def test_a_node_ends_whose_handler_got_no_thread(idl, one_network, monkeypatch):
