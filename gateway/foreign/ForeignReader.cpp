@@ -75,9 +75,12 @@ void ForeignReader::Open(TransportSession &session, Duration now)
     if (!IsQueue())
     {
         const std::shared_ptr<RabitMessage> message = _type.CreateShared();
-        if (_workspace.AddPublishSubscribeMessage(_rule.Local, message))
+        const bool attached = _workspace.AddPublishSubscribeMessage(_rule.Local, message);
+        const auto global = message->GetGlobalPublishSubscribeMessageRef();
+        // Types made at run time share one class: the workspace does not tell them apart.
+        if (attached && _type.IsTypeOf(*global->GetCopyOfMessage()))
         {
-            _global = message->GetGlobalPublishSubscribeMessageRef();
+            _global = global;
         }
         else
         {

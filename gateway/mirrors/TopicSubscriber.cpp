@@ -134,10 +134,17 @@ std::uint64_t TopicSubscriber::CrowdedOut() const
 void TopicSubscriber::Register(Source &source)
 {
     source.Local.emplace(_workspace, source.LocalName, _type.CreateShared());
+    const std::shared_ptr<PublishSubscribeMessage> &global = source.Local->Global();
+    // Types made at run time share one class: the workspace does not tell them apart.
+    const bool fits = global && _type.IsTypeOf(*global->GetCopyOfMessage());
+    if (!fits)
+    {
+        source.Local.reset();
+    }
     const std::lock_guard lock(_mutex);
-    source.Problem = source.Local->Global() ? ""
-                                            : "the local message `" + source.LocalName +
-                                                  "` is of another type than `" + _type.Name() + "`";
+    source.Problem =
+        fits ? ""
+             : "the local message `" + source.LocalName + "` is of another type than `" + _type.Name() + "`";
 }
 
 bool TopicSubscriber::IsRepetition(const Source &source, const SampleInfo &info)
@@ -211,11 +218,11 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
     {
         return Outcome::Undecodable;
     }
-    if (!source.Local || !source.Local->Global())
+    if (!source.Local)
     {
         Register(source);
     }
-    if (!source.Local->Global())
+    if (!source.Local)
     {
         return Outcome::NotPostable;
     }

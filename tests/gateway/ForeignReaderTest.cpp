@@ -5,6 +5,8 @@
 #include <rabit/ManualClock.h>
 #include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitMessageQueue.h>
+#include <rabit/dynamic/DynamicMessage.h>
+#include <rabit/dynamic/DynamicType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <future>
@@ -322,6 +324,26 @@ TEST_F(ForeignReaderTest, SaysThatTheLocalMessageIsOfAnotherType)
     EXPECT_EQ(ProblemText(),
               "foreign contacts: the local message `Other` is of another type than `GatewayTest::Contact`");
     EXPECT_EQ(Reader().Status(Now()).samples, 0u);
+}
+
+// All types made at run time share one C++ class.
+TEST_F(ForeignReaderTest, SaysThatTheLocalMessageIsOfAnotherTypeMadeAtRunTime)
+{
+    const auto number = DynamicType::Parse("struct Number { long value; };", "Number").Type;
+    const auto text = DynamicType::Parse("struct Text { string value; };", "Text").Type;
+    rule.Local = "Made";
+    rule.Type = "Text";
+    workspace.AddPublishSubscribeMessage("Made", number->CreateShared());
+    ForeignReader made(
+        rule, *text, ForeignMatch::Network{7}, workspace, [] {}, &handlers);
+    made.Open(session, Now());
+    for (const std::uint64_t sequence : {1u, 2u})
+    {
+        ASSERT_NO_THROW(network.DeliverBytes(text->DefaultSample(), sequence));
+    }
+    made.Service(Now());
+    ASSERT_TRUE(made.Problem());
+    EXPECT_EQ(made.Problem()->reason, "the local message `Made` is of another type than `Text`");
 }
 
 TEST_F(ForeignReaderTest, AsksForWhatTheWritersOfferOnceTheyAreThere)

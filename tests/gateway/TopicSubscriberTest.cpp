@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 #include <rabit/ManualClock.h>
 #include <rabit/RabitHandlerThread.h>
+#include <rabit/dynamic/DynamicMessage.h>
+#include <rabit/dynamic/DynamicType.h>
 
 #include <future>
 #include <memory>
@@ -355,6 +357,22 @@ TEST_F(TopicSubscriberTest, WhatCannotBeUsedIsTakenInNevertheless)
     info.Node = "uav2";
     session.Handler(bytes, info);
     EXPECT_EQ(subscriber.TakenIn("uav2", 5), 3'000'000'000);
+}
+
+// All types made at run time share one C++ class.
+TEST_F(TopicSubscriberTest, ALocalMessageOfAnotherTypeMadeAtRunTimeIsReportedNotExchanged)
+{
+    const auto local = DynamicType::Parse("struct Number { long value; };", "Number").Type;
+    const auto written = DynamicType::Parse("struct Text { string value; };", "Text").Type;
+    workspace.AddPublishSubscribeMessage("uav1/Made", local->CreateShared());
+    TopicSubscriber made{{.Message = "Made", .Type = "Text", .From = {"*"}}, *written, origins, workspace};
+    made.Open(session);
+    for (const std::int64_t time : {1'000'000'000, 2'000'000'000})
+    {
+        ASSERT_NO_THROW(HearBytes(written->DefaultSample(), time));
+    }
+    EXPECT_EQ(made.LocalProblem("uav1"), "the local message `uav1/Made` is of another type than `Text`");
+    EXPECT_TRUE(local->IsTypeOf(*workspace.FindGlobalMessage("uav1/Made")->GetCopyOfMessage()));
 }
 
 // Partitions alone do not keep such a node out: with keys, one vendor checks the partitions of its own
