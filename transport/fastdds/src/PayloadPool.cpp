@@ -16,6 +16,8 @@ namespace
 constexpr std::uint32_t LargestKept = 64u << 10;
 constexpr std::uint32_t SmallestBuffer = 512;
 constexpr std::size_t MostKept = 1u << 20;  // bytes
+// A history may hold its samples for ever, so a small one takes no large buffer.
+constexpr std::uint32_t Loosest = 2;
 constexpr std::align_val_t Alignment{16};
 
 std::uint32_t CapacityFor(std::uint32_t size)
@@ -56,7 +58,7 @@ PayloadPool::Buffer PayloadPool::Acquire(std::uint32_t size)
         const std::lock_guard lock(_mutex);
         for (std::size_t i = _free.size(); i-- > 0;)
         {
-            if (_free[i].Capacity >= capacity)
+            if (_free[i].Capacity >= capacity && _free[i].Capacity <= Loosest * capacity)
             {
                 const Buffer found = _free[i];
                 _free[i] = _free.back();
