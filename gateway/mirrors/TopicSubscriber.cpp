@@ -30,8 +30,7 @@ TopicSubscriber::TopicSubscriber(const SubscribeRule &rule, const MessageType &t
       _origins(origins),
       _workspace(workspace),
       _handlers(handlers),
-      _tap(std::move(tap)),
-      _scratch(type.Create())
+      _tap(std::move(tap))
 {
 }
 
@@ -213,8 +212,12 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
     {
         return Outcome::Repeated;
     }
-    _scratch->RabitMessage::Clear();  // it may hold a former post, with ints that a manager here set
-    if (!_type.Deserialize(bytes, *_scratch))
+    if (!source.Scratch)
+    {
+        source.Scratch = _type.Create();
+    }
+    source.Scratch->RabitMessage::Clear();  // it may hold a former post, with ints that a manager here set
+    if (!_type.Deserialize(bytes, *source.Scratch))
     {
         return Outcome::Undecodable;
     }
@@ -229,7 +232,7 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
     const double stamp = GpsTime::ToGps(info.SourceTime + origin->SourceToWall.count());
     const std::shared_ptr<PublishSubscribeMessage> &global = source.Local->Global();
     const RabitHandlerThread::Scope scope(_handlers, source.LocalName, global);
-    global->PostContents(_scratch, PostTime{stamp, *posted});
+    global->PostContents(source.Scratch, PostTime{stamp, *posted});
     source.Posted = Sample{info.Incarnation, info.SourceTime};
     if (_tap)
     {

@@ -88,6 +88,9 @@ private:
         bool IsWanted = false;  // the rule names it
         std::string LocalName;
         std::optional<RabitMessageLease> Local;
+        // Exchanged for the local message's contents by each post: of each node its own, so that a large
+        // message takes no memory for the others.
+        std::unique_ptr<RabitMessage> Scratch;
         std::string Problem;
         std::optional<Sample> Posted;
         std::optional<Sample> Taken;      // guarded, as the counters are
@@ -124,7 +127,6 @@ private:
     // Held by the handler, from decoding to the post, if there are several sessions: their readers may run at
     // once, one reader's handlers never do.
     std::mutex _taking;
-    std::unique_ptr<RabitMessage> _scratch;
 
     mutable std::mutex _mutex;  // guards the counters in _sources, and the maps
     // The handler holds the one that it uses, which may be forgotten meanwhile.

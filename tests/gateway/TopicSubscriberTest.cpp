@@ -63,11 +63,12 @@ protected:
         subscriber.SetOffer("uav1", QosProfile::State);
     }
 
-    void Hear(std::uint32_t number, std::int64_t time, const std::string &node = "uav1")
+    void Hear(std::uint32_t number, std::int64_t time, const std::string &node = "uav1",
+              const std::string &text = "here")
     {
         Contact contact;
         contact.number = number;
-        contact.text = "here";
+        contact.text = text;
         const MessageSample sample(contact);
         std::vector<std::uint8_t> bytes(sample.EncodedSize());
         ASSERT_TRUE(sample.Encode(bytes));
@@ -373,6 +374,17 @@ TEST_F(TopicSubscriberTest, ALocalMessageOfAnotherTypeMadeAtRunTimeIsReportedNot
     }
     EXPECT_EQ(made.LocalProblem("uav1"), "the local message `uav1/Made` is of another type than `Text`");
     EXPECT_TRUE(local->IsTypeOf(*workspace.FindGlobalMessage("uav1/Made")->GetCopyOfMessage()));
+}
+
+TEST_F(TopicSubscriberTest, ALargeMessageOfOneNodeTakesNoMemoryForThatOfAnother)
+{
+    origins.Set("uav2", {.Incarnation = 5, .Source = {}, .SourceToWall = 0s});
+    subscriber.SetOffer("uav2", QosProfile::State);
+    Hear(1, 1'000'000'000, "uav1", std::string(10'000, 'x'));
+    Hear(2, 2'000'000'000, "uav1");
+    Hear(3, 3'000'000'000, "uav2");
+    const auto global = workspace.FindGlobalMessage("uav2/Contact");
+    EXPECT_LT(static_cast<const Contact &>(*global->GetTestMessage()).text.capacity(), 1000u);
 }
 
 // Partitions alone do not keep such a node out: with keys, one vendor checks the partitions of its own
