@@ -280,15 +280,13 @@ class Reader:
         network = Network(name, self.names(value.get("members", "*"), value.line_of("members")))
         network.rate = self.get(value, "rate", units.bits_per_second, 0)
         network.loss = self.get(value, "loss", units.percent, 0)
-        network.burst = self.get(value, "burst", units.number, 1)
+        network.burst = self.get(value, "burst", units.burst, 1)
         network.delay = self.get(value, "delay", units.length, 0)
         network.jitter = self.get(value, "jitter", units.length, 0)
         network.queue = self.get(value, "queue", units.size, 16000)
         network.overhead = self.get(value, "overhead", units.size, 0)
-        network.seed = int(self.get(value, "seed", units.number, 1))
+        network.seed = self.get(value, "seed", units.seed, 1)
         network.capture = self.flag(value, "capture")
-        if network.burst < 1:
-            self.fail(value.line_of("burst"), "burst: at least 1 frame")
         links = self.list(value.get("links", marked.List()), value.line_of("links"), "links")
         for at, link in zip(links.lines, links):
             network.links.append(self._read_link(self.map(link, at, "links"), network))
@@ -312,7 +310,7 @@ class Reader:
         return Link(self.names(value["from"], value.line_of("from"), network.members),
                     self.names(value["to"], value.line_of("to"), network.members),
                     self.get(value, "loss", units.percent, network.loss),
-                    self.get(value, "burst", units.number, network.burst),
+                    self.get(value, "burst", units.burst, network.burst),
                     self.get(value, "delay", units.length, network.delay),
                     self.get(value, "jitter", units.length, network.jitter))
 
@@ -395,7 +393,7 @@ class Reader:
         if verb in ("loss", "delay"):
             values["from"] = self.names(value.get("from", "*"), value.line_of("from"))
             values["to"] = self.names(value.get("to", "*"), value.line_of("to"))
-            values["burst"] = self.get(value, "burst", units.number, 1)
+            values["burst"] = self.get(value, "burst", units.burst, 1)
             values["jitter"] = self.get(value, "jitter", units.length, 0)
         if "network" in self.VERBS[verb]:
             values["network"] = self.network_of(value)

@@ -32,8 +32,8 @@ def bits_per_second(value):
     if value == "unlimited":
         return 0
     result = _quantity(value, {"bit/s": 1, "kbit/s": 1e3, "Mbit/s": 1e6, "Gbit/s": 1e9}, "a rate such as 250kbit/s")
-    if not 1 <= result <= 1e10:
-        raise ValueError(f"`{value}`: a rate is from 1 bit/s to 10 Gbit/s")
+    if not 8 <= result <= 1e10:  # the programs count whole bytes
+        raise ValueError(f"`{value}`: a rate is from 8 bit/s to 10 Gbit/s")
     return result
 
 
@@ -67,6 +67,21 @@ def percent(value):
 def number(value):
     """A number without a unit."""
     return _quantity(value, {"": 1}, "a number")
+
+
+def burst(value):
+    """Losses in a row, on average."""
+    result = number(value)
+    if result < 1:
+        raise ValueError(f"`{value}`: a burst is at least 1")
+    return result
+
+
+def seed(value):
+    """Of random numbers: an integer of 64 bits."""
+    if not re.fullmatch(r"[0-9]+", str(value)) or int(value) >= 2 ** 64:
+        raise ValueError(f"`{value}`: a seed is a whole number from 0 to {2 ** 64 - 1}")
+    return int(value)
 
 
 def metres(value):

@@ -16,7 +16,7 @@ ETHERNET = 14  # bytes that a frame of the lab's radio has before its IP packet
 
 @dataclasses.dataclass
 class Option:
-    """Of the command line."""
+    """An option of the command line."""
     name: str
     word: str
     text: str
@@ -24,10 +24,12 @@ class Option:
     default: typing.Optional[str] = None
 
 
+LONGEST_DELAY = 3600  # seconds
+
 OPTIONS = [
     Option("radio", "RATE", "of the channel, which all share, as 57.6kbit/s; default: unlimited", units.bits_per_second, "unlimited"),
     Option("loss", "SHARE", "of the datagrams, at each receiver, as 10%%; default: 0%%", units.percent, "0%"),
-    Option("burst", "NUMBER", "datagrams that are lost in a row, on average; default: 1", units.number, "1"),
+    Option("burst", "NUMBER", "datagrams that are lost in a row, on average; default: 1", units.burst, "1"),
     Option("delay", "TIME", "of each datagram after the air; default: 0s", units.length, "0s"),
     Option("jitter", "TIME", "more or less at most; default: 0s", units.length, "0s"),
     Option("queue", "SIZE", "that waits at each node's radio at most; default: 16kB", units.size, "16kB"),
@@ -35,7 +37,7 @@ OPTIONS = [
     Option("budget", "RATE", "of each node, as 1500B/s, or auto; default: those of the recorded configurations",
            units.bytes_per_second),
     Option("after", "TIME", "only from then on values are counted; default: 0s", units.length, "0s"),
-    Option("seed", "NUMBER", "of the random numbers; default: 1", units.number, "1"),
+    Option("seed", "NUMBER", "start of the random numbers, a whole number; default: 1", units.seed, "1"),
 ]
 
 
@@ -51,11 +53,11 @@ class Radio:
     overhead: int
     budget: typing.Optional[float]
     after: float
-    seed: float
+    seed: int
 
     @staticmethod
     def of(options):
-        """Raises ScenarioError for an option that is no quantity."""
+        """Raises ScenarioError for an option that is no quantity, or that cannot be flown."""
         values = {}
         for option in OPTIONS:
             text = getattr(options, option.name)
@@ -63,6 +65,10 @@ class Radio:
                 values[option.name] = option.unit(text) if text is not None else None
             except ValueError as error:
                 raise ScenarioError(f"--{option.name}", str(error)) from None
+        if values["delay"] > LONGEST_DELAY:
+            raise ScenarioError("--delay", f"`{options.delay}`: a delay is at most {LONGEST_DELAY} s")
+        if values["jitter"] > values["delay"]:
+            raise ScenarioError("--jitter", f"`{options.jitter}` is more than the delay of `{options.delay}`; name a longer --delay")
         return Radio(**values)
 
     def text(self):
@@ -78,8 +84,9 @@ class Radio:
 
     def argv(self):
         words = {"rate": self.radio / 8, "queue": self.queue, "overhead": ETHERNET + self.overhead, "loss": self.loss,
-                 "burst": self.burst, "delay": max(self.delay - self.jitter, 0), "jitter": 2 * self.jitter, "budget": self.budget, "seed": int(self.seed)}
-        return [word for name, value in words.items() if value is not None for word in (f"--{name}", f"{value:.10g}")]
+                 "burst": self.burst, "delay": self.delay - self.jitter, "jitter": 2 * self.jitter, "budget": self.budget,
+                 "seed": self.seed}
+        return [word for name, value in words.items() if value is not None for word in (f"--{name}", str(value))]
 
 
 @dataclasses.dataclass

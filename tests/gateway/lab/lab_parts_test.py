@@ -3,17 +3,20 @@
 the files that a run leaves."""
 
 import contextlib
+import dataclasses
 import io
 import pathlib
 import sys
 import tempfile
+import types
 import unittest
+from unittest import mock
 from xml.etree import ElementTree
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "gateway" / "lab"))
 # pylint: disable=wrong-import-position
 from rabit_lab import flight as flights  # noqa: E402
-from rabit_lab import junit, main, new, places, plots, report, scenario, units, what_if  # noqa: E402
+from rabit_lab import junit, main, new, places, plots, report, scenario, tools, units, what_if  # noqa: E402
 from rabit_lab.marked import ScenarioError  # noqa: E402
 
 FLEET = """nodes:
@@ -290,6 +293,46 @@ class WhatIfTest(InFolder):
     def test_an_option_without_its_unit_is_refused(self):
         with self.assertRaisesRegex(ScenarioError, "--radio: `57600`"):
             what_if.Radio.of(main.parse(["replay", "flight.mcap", "--radio", "57600"]))
+
+    def test_an_option_that_cannot_be_flown_is_refused_in_one_line_that_names_it(self):
+        for name, value in (("seed", "1.7"), ("seed", "-1"), ("seed", str(2 ** 64)), ("burst", "-3"), ("burst", "0.5"),
+                            ("radio", "7bit/s"), ("jitter", "30ms"), ("delay", "2h")):
+            with self.subTest(f"{name} {value}"):
+                with self.assertRaisesRegex(ScenarioError, f"^--{name}: [^\n]*$"):
+                    what_if.Radio.of(main.parse(["replay", "flight.mcap", "--delay", "20ms", f"--{name}", value]))
+
+    def test_a_seed_is_passed_on_with_all_its_digits(self):
+        words = what_if.Radio.of(main.parse(["replay", "flight.mcap", "--seed", str(2 ** 64 - 1)])).argv()
+        self.assertEqual(words[words.index("--seed") + 1], str(2 ** 64 - 1))
+
+
+class ReplayCommandTest(InFolder):
+    def replay(self, fly):
+        """(exit code, what it said)"""
+        found = types.SimpleNamespace(replay="lab_replay")
+        with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.redirect_stderr(said), \
+                mock.patch.object(tools, "find", return_value=found), mock.patch.object(what_if, "fly", side_effect=fly):
+            return main.main(["replay", "flight.mcap", "--to", str(self.folder / "results")]), said.getvalue()
+
+    def test_a_folder_that_is_in_use_is_refused_before_the_flight(self):
+        (self.folder / "results").mkdir()
+        (self.folder / "results" / "mine").write_text("", encoding="utf-8")
+        code, said = self.replay(AssertionError("it was flown"))
+        self.assertEqual((code, "--to" in said), (2, True))
+
+    def test_a_folder_that_cannot_be_made_is_refused_in_one_line(self):
+        (self.folder / "results").write_text("", encoding="utf-8")
+        code, said = self.replay(AssertionError("it was flown"))
+        self.assertEqual((code, said.count("\n"), "--to" in said), (2, 1, True))
+
+    def test_an_interrupted_flight_leaves_no_folder(self):
+        code, said = self.replay(KeyboardInterrupt())
+        self.assertEqual((code, said), (130, "interrupted\n"))
+        self.assertFalse((self.folder / "results").exists())
+
+    def test_a_recording_that_is_refused_leaves_no_folder(self):
+        self.assertEqual(self.replay(ScenarioError("flight.mcap", "is no recording"))[0], 2)
+        self.assertFalse((self.folder / "results").exists())
 
 
 class PlacesTest(InFolder):
