@@ -18,9 +18,12 @@ def folder_for(name, wanted):
     """A new folder for the results."""
     now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y%m%dT%H%M%SZ")
     path = pathlib.Path(wanted) if wanted else pathlib.Path("lab", f"{name}_{now}")
-    if path.exists() and any(path.iterdir()):
-        raise ScenarioError(path, "is there already; name another folder with --to")
-    path.mkdir(parents=True, exist_ok=True)
+    try:
+        if path.exists() and any(path.iterdir()):
+            raise ScenarioError(path, "is there already; name another folder with --to")
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise ScenarioError(path, f"cannot be made ({error.strerror}); name another folder with --to") from None
     return path.resolve()
 
 
@@ -77,9 +80,17 @@ def replay(options):
     """`rabit lab replay`"""
     found = tools.find()
     radio = what_if.Radio.of(options)
-    flight = what_if.fly(found.replay, options.recording, radio)
     folder = folder_for(f"{pathlib.Path(options.recording[0]).stem}_what_if", options.to)
-    what_if.show(flight, radio, folder)
+    is_shown = False
+    try:
+        what_if.show(what_if.fly(found.replay, options.recording, radio), radio, folder)
+        is_shown = True
+    except KeyboardInterrupt:
+        print("interrupted")
+        return INTERRUPTED
+    finally:
+        if not is_shown:
+            shutil.rmtree(folder, ignore_errors=True)
     print(f"\n{folder}/report.html")
     return GOOD
 
