@@ -154,7 +154,8 @@ class Flight:
         elif kind == "values":
             pairs = list(zip(map(to_lab, fact["at"]), map(to_lab, fact["posted"])))
             self.values[life_index, fact["node"], fact["message"]].extend(pairs)
-            self.newest[life_index][fact["node"], fact["message"]] = pairs[-1][1]
+            if pairs:
+                self.newest[life_index][fact["node"], fact["message"]] = pairs[-1][1]
         elif kind == "problem":
             self.problems.append([life.node, fact["subject"], fact["node"], fact["reason"], time, None])
         elif kind == "solved":

@@ -109,12 +109,15 @@ def fly(program, files, radio):
 
 
 def read(name, facts, radio):
-    """What the facts of lab_replay say."""
+    """What the facts of lab_replay say. Raises ScenarioError if nothing is left to count."""
+    end = facts[0]["end"] / 1e9
+    if radio.after > 0 and radio.after >= end:
+        raise ScenarioError("--after", f"{radio.after:g} s is not before the end of the flight at {end:.1f} s; name an earlier time")
     nodes = sorted({fact["node"] for fact in facts if fact["fact"] == "life"})
     channel = scenarios.Network("radio", nodes, rate=radio.radio, queue=radio.queue)
     made = scenarios.Scenario(pathlib.Path(name), pathlib.Path("."),
                               {node: scenarios.Node(node, [], "", {}, 0.0, False, 0) for node in nodes}, {"radio": channel},
-                              facts[0]["end"] / 1e9, [], [], None)
+                              end, [], [], None)
     flown = Flown(flights.Flight(made), flights.Flight(made), collections.defaultdict(list), [], [])
     indexes = {}
     for fact in facts:
@@ -165,14 +168,14 @@ class Row:
     streams: int
     posted: int
     went_out: int
-    due: int  # arrivals, if nothing that went out is lost
+    due: int  # arrivals, if nothing is lost that went out while the observer was there
     arrived: int
     delay_p90: float  # from the post to the arrival
     p50: float
     p90: float
-    worst: float
+    worst: typing.Optional[float]  # None: no observer was there
     where: str
-    recorded_p90: float
+    recorded_p90: typing.Optional[float]  # None: the recorder left the message out
 
 
 def streams(flown):
@@ -196,27 +199,37 @@ def left_out(flown, origin, message, after):
 def row(flown, message, chosen, after):
     """The figures of some streams of one message."""
     simulated, recorded = flown.simulated, flown.recorded
-    mine, theirs, worst = [], [], (0.0, "")
+    mine, theirs, oldest = [], [], []
     out, posts, due, arrived, delays = {}, {}, 0, 0, []
     for observer, origin, _ in sorted(chosen):
         posted = sorted(at for index, life in enumerate(simulated.lives) if life.node == origin
                         for _, at in simulated.values.get((index, origin, message), []))
+        sent_share = 1 - left_out(flown, origin, message, after)
         posts[origin] = sum(at >= after for at in posted)
-        out[origin] = round(posts[origin] * (1 - left_out(flown, origin, message, after)))
+        out[origin] = round(posts[origin] * sent_share)
         since = posted[0] if posted else 0.0
-        for pieces, flight in ((mine, simulated), (theirs, recorded)):
-            found = flight.ages(observer, origin, message, max(after, since), simulated.end, since)
-            pieces += found
-            if flight is simulated:
-                age, at = flights.oldest(found)
-                worst = max(worst, (age or 0.0, f"{origin} at {observer}, at {at or 0:.1f} s"))
-        due += out[origin]
-        came = [at - sent for index, life in enumerate(simulated.lives) if life.node == observer
-                for at, sent in simulated.values.get((index, origin, message), []) if sent >= after or not after]
-        arrived += min(len(came), out[origin])  # a State comes again after an outage
+        found = simulated.ages(observer, origin, message, max(after, since), simulated.end, since)
+        mine += found
+        oldest += [(*flights.oldest(found), f"{origin} at {observer}")] if found else []
+        if any(recorded.values.get((index, origin, message)) for index in lives_of(recorded, observer)):
+            theirs += recorded.ages(observer, origin, message, max(after, since), simulated.end, since)
+        there = [simulated.lives[index] for index in lives_of(simulated, observer)]
+        wanted = round(sent_share * sum(at >= after and any(life.is_there(at) for life in there) for at in posted))
+        due += wanted
+        came = [at - sent for index in lives_of(simulated, observer)
+                for at, sent in simulated.values.get((index, origin, message), [])
+                if sent >= after and simulated.lives[index].is_there(sent)]
+        arrived += min(len(came), wanted)  # a State comes again after an outage
         delays += came
+    worst, at, where = max(oldest, default=(None, None, "-"))
     return Row(message, len(chosen), sum(posts.values()), sum(out.values()), due, arrived, quantile(delays, 0.9),
-               flights.age_below(mine, 0.5), flights.age_below(mine, 0.9), worst[0], worst[1], flights.age_below(theirs, 0.9))
+               flights.age_below(mine, 0.5), flights.age_below(mine, 0.9), worst,
+               where if at is None else f"{where}, at {at:.1f} s", flights.age_below(theirs, 0.9))
+
+
+def lives_of(flight, node):
+    """The indexes of its lives."""
+    return [index for index, life in enumerate(flight.lives) if life.node == node]
 
 
 def quantile(values, part):

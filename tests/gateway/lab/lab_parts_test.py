@@ -266,6 +266,39 @@ class WhatIfTest(InFolder):
         facts.append({"fact": "medium", "t": 10e9, "bytes": 36000, "carried": 90, "dropped": 10, "longest_wait": 1e9})
         return what_if.read("flight.mcap", facts + list(more), self.RADIO)
 
+    @staticmethod
+    def posts_at(observer, posts):
+        """uav's Health, as posted, and as one observer received all of it at once."""
+        return [{"fact": "values", "file": file, "t": 10e9, "node": "uav", "message": "Health", "at": posts, "posted": posts}
+                for file in ("uav", observer)]
+
+    def row(self, message, more, after=0):
+        return next(row for row in what_if.rows(self.flown(more), after)[0] if row.message == message)
+
+    def test_a_message_that_is_never_posted_is_no_stream(self):
+        never = {"fact": "values", "file": "uav", "t": 10e9, "node": "uav", "message": "Never", "at": [], "posted": []}
+        self.assertEqual([row.message for row in what_if.rows(self.flown([never]), 0)[0]], ["Pose"])
+
+    def test_posts_before_the_observer_was_there_are_not_lost(self):
+        late = {"fact": "life", "file": "late", "node": "late", "t": 5e9, "ended": 8e9}
+        row = self.row("Health", [late] + self.posts_at("late", [n * 1e9 for n in range(1, 10)]))
+        self.assertEqual((row.posted, row.due, row.arrived), (9, 3, 3))
+
+    def test_a_stream_that_was_not_recorded_has_no_age_as_recorded(self):
+        row = self.row("Health", self.posts_at("ground", [1e9, 2e9]))
+        self.assertIsNone(row.recorded_p90)
+        self.assertIsNotNone(row.p90)
+
+    def test_an_observer_that_was_never_there_has_no_oldest_value(self):
+        early = {"fact": "life", "file": "early", "node": "early", "t": 0, "ended": 3e9}
+        row = self.row("Health", [early] + self.posts_at("early", [1e9, 2e9]), after=5)
+        self.assertEqual((row.worst, row.where), (None, "-"))
+
+    def test_counting_from_beyond_the_end_is_refused(self):
+        radio = dataclasses.replace(self.RADIO, after=20)
+        with self.assertRaisesRegex(ScenarioError, "--after: 20 s .*10.0 s"):
+            what_if.read("flight.mcap", [{"fact": "flight", "end": 10e9}], radio)
+
     def test_the_share_that_went_out_and_the_share_that_arrived_are_told_apart(self):
         (row,), _ = what_if.rows(self.flown(), 0)
         self.assertEqual((row.posted, row.went_out, row.due, row.arrived), (90, 45, 45, 45))
