@@ -165,7 +165,8 @@ expect:
 """
 # The same radio for `rabit lab replay`, after the nodes have met.
 SAME_RADIO = ["--radio", "125kbit/s", "--loss", "5%", "--delay", "20ms", "--after", "9s"]
-AS_EMULATED = 0.2  # largest difference of the ages, as a share
+AS_EMULATED = 0.2  # largest difference of the ages, as a share of the recorded one,
+LATENESS_S = 0.1  # and in addition to it: the programs of the recorded flight ran on a machine that others use, too
 # A user without root, on a machine where users may open this device, as Debian has it.
 AS_USER = ["unshare", "--mount", "sh", "-c", "mount -t tmpfs none /dev/net && mknod -m 666 /dev/net/tun c 10 200 && exec setpriv "
            "--reuid=65534 --regid=65534 --clear-groups \"$@\"", "sh"]
@@ -245,7 +246,7 @@ def check_radio(case):
 
 
 def check_what_if(case, rabit):
-    """The recorded flight is younger or older in simulated time by no more than a fifth, and each time the same."""
+    """Ages of the recorded flight are about the same in simulated time, and exactly the same each time."""
     folders = [case.folder / "replayed", case.folder / "again"]
     for folder in folders:
         done = subprocess.run([rabit, "lab", "replay", case.results / "flight.mcap", *SAME_RADIO, "--to", folder], text=True,
@@ -257,8 +258,10 @@ def check_what_if(case, rabit):
     for message in ("Pose", "Health", "MissionState", "Findings"):
         if message in found:
             flown, simulated = found[message]["recorded_p90"], found[message]["p90"]
+            check(flown is not None, case, f"nobody recorded an arrival of {message}")
+            check(simulated is not None, case, f"no node was there for {message} in simulated time")
             print(f"{message}: age p90 {flown:.3f} s over the emulated radio, {simulated:.3f} s in simulated time")
-            check(abs(simulated - flown) <= AS_EMULATED * flown, case, f"the ages of {message} differ")
+            check(abs(simulated - flown) <= AS_EMULATED * flown + LATENESS_S, case, f"the ages of {message} differ")
     check("Pose" in found, case, f"the replay has no Pose: {sorted(found)}")
     print(f"ok: {case.folder.name}: flown again in simulated time")
 
