@@ -82,16 +82,16 @@ std::vector<std::string> WordsOf(const char *command, const Options &options)
 
 // Of `rabit lab replay`: the name, the word for its value, and the text.
 constexpr std::array<std::array<const char *, 3>, 10> RadioOptions = {{
-    {"--radio", "RATE", "Of the channel, which all share, as 57.6kbit/s (default: unlimited)"},
-    {"--loss", "SHARE", "Of the datagrams, at each receiver, as 10% (default: 0%)"},
+    {"--radio", "RATE", "Rate of the channel, which all share, as 57.6kbit/s (default: unlimited)"},
+    {"--loss", "SHARE", "Share of the datagrams that each receiver loses, as 10% (default: 0%)"},
     {"--burst", "NUMBER", "Datagrams that are lost in a row, on average (default: 1)"},
-    {"--delay", "TIME", "Of each datagram after the air, as 20ms (default: 0s)"},
-    {"--jitter", "TIME", "More or less at most, as 5ms (default: 0s)"},
-    {"--queue", "SIZE", "That waits at each node's radio at most (default: 16kB)"},
-    {"--overhead", "SIZE", "That each frame takes in addition (default: 0B)"},
-    {"--budget", "RATE", "Of each node, as 1500B/s, or auto (default: as each node was configured)"},
-    {"--after", "TIME", "Values are counted only from then on (default: 0s)"},
-    {"--seed", "NUMBER", "Of the random numbers (default: 1)"},
+    {"--delay", "TIME", "Time that each datagram takes after the air, as 20ms (default: 0s)"},
+    {"--jitter", "TIME", "Largest difference from the delay, and no more than it, as 5ms (default: 0s)"},
+    {"--queue", "SIZE", "Bytes that wait at each node's radio at most (default: 16kB)"},
+    {"--overhead", "SIZE", "Bytes that each frame takes in addition (default: 0B)"},
+    {"--budget", "RATE", "Budget of each node, as 1500B/s, or auto (default: as each node was configured)"},
+    {"--after", "TIME", "Time from which values are counted (default: 0s)"},
+    {"--seed", "NUMBER", "Start of the random numbers, a whole number (default: 1)"},
 }};
 
 void AddReplay(CLI::App &lab, Chosen &chosen)

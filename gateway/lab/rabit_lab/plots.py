@@ -88,7 +88,7 @@ def states(flight):
             picture.rect(begin, end, y, 12, STATES[state], f"{node} {state or 'not known'}, {begin:.1f} to {end:.1f} s")
         for life in flight.lives_of(node):
             picture.rect(life.began, min(life.ended if life.ended is not None else flight.end, flight.end), y + 14, 4,
-                         "#39424e", f"{node} runs, life {life.number}")
+                         "#39424e", f"{node} runs, incarnation {life.number}")
     x = LEFT
     for state, text in (("UP", "UP"), ("STALE", "STALE"), ("LOST", "LOST"), ("", "not known")):
         picture.parts.append(f'<rect x="{x}" y="{picture.height - 13}" width="11" height="11" fill="{STATES[state]}"/>')

@@ -143,7 +143,7 @@ def write(scenario, flight, verdicts, interrupted, merged, folder):
     now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
     notes = "".join(f"<p>{escape(note)}</p>" for note in flight.notes + ([f"no flight.mcap: {merged}"] if merged else []))
     files = [("flight.mcap", "what every node recorded, on one time line; Foxglove and `rabit knew` open it"),
-             ("records/", "the recordings of each life of each node"), ("observer/", "what one observer on the air heard"),
+             ("records/", "the recordings of each incarnation of each node"), ("observer/", "what one observer on the air heard"),
              ("log.txt", "the log below"), ("logs/", "the output of each node"), ("radio.json", "the channels' counters"),
              ("plots/", "the pictures above"), ("junit.xml", "the verdicts, for continuous integration")]
     write_page(folder / "report.html", f"{scenario.path.stem}: {word}", good,

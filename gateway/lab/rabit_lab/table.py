@@ -87,7 +87,7 @@ class Table:
         life = self._flight.life_at(node, now)
         number = len(self._flight.lives_of(node))
         frozen = any(began <= now < ended for began, ended in self._flight.frozen(node))
-        runs = ("frozen" if frozen else "yes" if number == 1 else f"life {number}") if life else "no" if number else "-"
+        runs = ("frozen" if frozen else "yes" if number == 1 else f"incarnation {number}") if life else "no" if number else "-"
         seen = " ".join(f"{state} {count}" for state, count in sorted(self.seen(node, now).items(), reverse=True))
         air = self._flight.air.get(node)
         sends = f"{air[-1][1]:.0f} B/s" if life and air else "-"

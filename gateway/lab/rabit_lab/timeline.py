@@ -19,7 +19,7 @@ def entries(flight):
         if fault.began < fault.ended < float("inf"):
             found.append((fault.ended, "lab", "lab", f"end of: {fault.text}"))
     for life in flight.lives:
-        found.append((life.began, life.node, "lab", "started" + (f", life {life.number}" if life.number > 1 else "")))
+        found.append((life.began, life.node, "lab", "started" + (f", incarnation {life.number}" if life.number > 1 else "")))
         if life.ended is not None:
             found.append((life.ended, life.node, "lab", f"ended with {life.code} ({life.by})"))
     return sorted(found, key=lambda entry: entry[0])

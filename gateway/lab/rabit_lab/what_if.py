@@ -27,16 +27,16 @@ class Option:
 LONGEST_DELAY = 3600  # seconds
 
 OPTIONS = [
-    Option("radio", "RATE", "of the channel, which all share, as 57.6kbit/s; default: unlimited", units.bits_per_second, "unlimited"),
-    Option("loss", "SHARE", "of the datagrams, at each receiver, as 10%%; default: 0%%", units.percent, "0%"),
+    Option("radio", "RATE", "rate of the channel, which all share, as 57.6kbit/s; default: unlimited", units.bits_per_second, "unlimited"),
+    Option("loss", "SHARE", "share of the datagrams that each receiver loses, as 10%%; default: 0%%", units.percent, "0%"),
     Option("burst", "NUMBER", "datagrams that are lost in a row, on average; default: 1", units.burst, "1"),
-    Option("delay", "TIME", "of each datagram after the air; default: 0s", units.length, "0s"),
-    Option("jitter", "TIME", "more or less at most; default: 0s", units.length, "0s"),
-    Option("queue", "SIZE", "that waits at each node's radio at most; default: 16kB", units.size, "16kB"),
-    Option("overhead", "SIZE", "that each frame takes in addition; default: 0B", units.size, "0B"),
-    Option("budget", "RATE", "of each node, as 1500B/s, or auto; default: those of the recorded configurations",
+    Option("delay", "TIME", "time that each datagram takes after the air; default: 0s", units.length, "0s"),
+    Option("jitter", "TIME", "largest difference from the delay, and no more than it; default: 0s", units.length, "0s"),
+    Option("queue", "SIZE", "bytes that wait at each node's radio at most; default: 16kB", units.size, "16kB"),
+    Option("overhead", "SIZE", "bytes that each frame takes in addition; default: 0B", units.size, "0B"),
+    Option("budget", "RATE", "budget of each node, as 1500B/s, or auto; default: those of the recorded configurations",
            units.bytes_per_second),
-    Option("after", "TIME", "only from then on values are counted; default: 0s", units.length, "0s"),
+    Option("after", "TIME", "time from which values are counted; default: 0s", units.length, "0s"),
     Option("seed", "NUMBER", "start of the random numbers, a whole number; default: 1", units.seed, "1"),
 ]
 

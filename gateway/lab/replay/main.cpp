@@ -36,13 +36,13 @@ int main(int argc, char **argv)
     app.add_option("--rate", rate, "Bytes a second of the radio, which all share; 0: no limit");
     app.add_option("--queue", settings.Medium.QueueBytes, "Bytes that wait at each node's radio at most");
     app.add_option("--overhead", settings.Medium.Overhead, "Bytes of each frame beyond its IP packet");
-    app.add_option("--loss", percent, "Percent of the datagrams, at each receiver");
+    app.add_option("--loss", percent, "Percent of the datagrams that each receiver loses");
     app.add_option("--burst", settings.Faults.Burst, "Datagrams that are lost in a row, on average");
     app.add_option("--delay", delay, "Seconds that a datagram takes after the air");
     app.add_option("--jitter", jitter, "Seconds that a datagram takes longer at most");
     CLI::Option *limit =
         app.add_option("--budget", budget, "Bytes a second of each node; 0: as the channel allows");
-    app.add_option("--seed", settings.Seed, "Of the random numbers");
+    app.add_option("--seed", settings.Seed, "Start of the random numbers; equal seeds give equal flights");
     CLI11_PARSE(app, argc, argv);
     settings.Medium.BytesPerSecond = static_cast<std::uint64_t>(rate);
     settings.Faults.Loss = percent / 100;
