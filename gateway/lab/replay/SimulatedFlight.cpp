@@ -131,11 +131,12 @@ void SimulatedFlight::Run()
     auto item = _recording.Messages().Next();
     for (;;)
     {
-        const Time start = nextLife < lives.size() ? std::max(lives[nextLife].Begin, _begin) : _end;
-        const Time end = ends.empty() ? _end : ends.begin()->first;
-        const Time post = item ? item->LogTime : _end;
+        constexpr Time never = std::numeric_limits<Time>::max();
+        const Time start = nextLife < lives.size() ? std::max(lives[nextLife].Begin, _begin) : never;
+        const Time end = ends.empty() ? never : ends.begin()->first;
+        const Time post = item ? item->LogTime : never;
         const Time now = std::min({start, end, post});
-        if (now >= _end)
+        if (now == never || now > _end)
         {
             break;
         }
@@ -256,7 +257,10 @@ void SimulatedFlight::End(std::size_t life, bool isCrash)
     _there.erase(node);
     for (const auto &[message, posted] : flying->Posts)
     {
-        TellOf(*flying, ValuesFact(node, message, true, posted.Values));
+        if (!posted.Values.empty())
+        {
+            TellOf(*flying, ValuesFact(node, message, true, posted.Values));
+        }
     }
     for (const auto &[stream, values] : flying->Tap->Arrived())
     {
