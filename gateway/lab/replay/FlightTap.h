@@ -9,6 +9,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -26,6 +27,7 @@ struct QueueBook
     struct Unanswered
     {
         Nanoseconds At{0};
+        std::uint64_t Id = 0;
         std::string Type;
         std::vector<std::uint8_t> Sample;
     };
@@ -35,6 +37,7 @@ struct QueueBook
         std::uint64_t Sent = 0;
         std::map<std::string, std::uint64_t> Outcomes{};  // by QueueOutcome
         std::vector<Nanoseconds> Ages{};                  // of each delivered message, at its delivery
+        // The messages that were neither received nor settled, all of one life of the sender.
         std::deque<Unanswered> Waiting{};
     };
     std::map<Link, Entry> Links;
@@ -51,6 +54,16 @@ public:
         : _node(std::move(node)), _clock(std::move(clock)), _ahead(ahead), _book(std::move(book))
     {
     }
+    ~FlightTap() override
+    {
+        for (auto &[link, entry] : _book->Links)
+        {
+            if (std::get<0>(link) == _node)
+            {
+                entry.Waiting.clear();
+            }
+        }
+    }
 
     // Arrival and post of each value, as the node knows them.
     using Values = std::vector<std::pair<Nanoseconds, Nanoseconds>>;
@@ -66,17 +79,27 @@ public:
     {
         QueueBook::Entry &entry = Entry(_node, message.Node, message.Queue);
         ++entry.Sent;
-        entry.Waiting.push_back(
-            {Now(), std::string(message.Type), {message.Sample.begin(), message.Sample.end()}});
+        if (IsFirstOf(message.Id))
+        {
+            entry.Waiting.push_back({Now(),
+                                     message.Id,
+                                     std::string(message.Type),
+                                     {message.Sample.begin(), message.Sample.end()}});
+        }
     }
     void Refused(const QueueMessage &message, std::string_view /*reason*/) override
     {
         ++Entry(_node, message.Node, message.Queue).Refused;
     }
-    void Settled(std::string_view node, std::string_view queue, std::uint64_t /*id*/,
+    void Settled(std::string_view node, std::string_view queue, std::uint64_t id,
                  QueueOutcome outcome) override
     {
-        ++Entry(_node, node, queue).Outcomes[ToString(outcome)];
+        QueueBook::Entry &entry = Entry(_node, node, queue);
+        ++entry.Outcomes[ToString(outcome)];
+        if (!IsFirstOf(id))
+        {
+            std::erase_if(entry.Waiting, [id](const QueueBook::Unanswered &sent) { return sent.Id == id; });
+        }
     }
     // A link delivers in order, so earlier messages that are still waiting will not come any more.
     void Received(const QueueMessage &message) override
@@ -104,6 +127,16 @@ public:
 
 private:
     Nanoseconds Now() const { return _clock->Monotonic() - _ahead; }
+    // False for the second one of Sent and Settled of a message. Settled may be the first.
+    bool IsFirstOf(std::uint64_t id)
+    {
+        if (_unpaired.erase(id) != 0)
+        {
+            return false;
+        }
+        _unpaired.insert(id);
+        return true;
+    }
     QueueBook::Entry &Entry(std::string_view from, std::string_view to, std::string_view queue)
     {
         return _book->Links[{std::string(from), std::string(to), std::string(queue)}];
@@ -113,6 +146,7 @@ private:
     const std::shared_ptr<const ManualClock> _clock;
     const Nanoseconds _ahead;
     const std::shared_ptr<QueueBook> _book;
+    std::set<std::uint64_t> _unpaired;  // messages of which one of Sent and Settled has come
     std::map<std::pair<std::string, std::string>, Values> _arrived;
 };
 

@@ -342,5 +342,60 @@ TEST_F(ReplayTest, ARecordingThatClaimsToLastYearsIsRefused)
     EXPECT_THROW(Recording({Path()}), std::runtime_error);
 }
 
+// A sender and a receiver. All messages are equal.
+class FlightTapTest : public testing::Test
+{
+protected:
+    std::unique_ptr<FlightTap> Tap(const std::string &node) const
+    {
+        return std::make_unique<FlightTap>(node, _clock, Nanoseconds(0), _book);
+    }
+    static GatewayTap::QueueMessage To(std::string_view node, std::uint64_t id)
+    {
+        return {.Node = node, .Queue = "Orders", .Type = TypeName, .Id = id, .Sample = {}};
+    }
+    void Pass(int seconds) const { _clock->Advance(std::chrono::seconds(seconds)); }
+    const std::vector<Nanoseconds> &Ages() const { return _book->Links.at({"ground", "uav", "Orders"}).Ages; }
+
+    const std::shared_ptr<ManualClock> _clock = std::make_shared<ManualClock>();
+    const std::shared_ptr<QueueBook> _book = std::make_shared<QueueBook>();
+    std::unique_ptr<FlightTap> _ground = Tap("ground");
+    const std::unique_ptr<FlightTap> _uav = Tap("uav");
+};
+
+TEST_F(FlightTapTest, AMessageHasNotTheAgeOfAnEqualOneThatExpired)
+{
+    _ground->Sent(To("uav", 1));
+    Pass(5);
+    _ground->Settled("uav", "Orders", 1, QueueOutcome::Expired);
+    _ground->Sent(To("uav", 2));
+    Pass(1);
+    _uav->Received(To("ground", 0));
+    EXPECT_THAT(Ages(), testing::ElementsAre(std::chrono::seconds(1)));
+}
+
+TEST_F(FlightTapTest, AMessageHasNotTheAgeOfAnEqualOneThatExpiredBeforeItWasTold)
+{
+    _ground->Settled("uav", "Orders", 1, QueueOutcome::Expired);
+    _ground->Sent(To("uav", 1));
+    Pass(5);
+    _ground->Sent(To("uav", 2));
+    Pass(1);
+    _uav->Received(To("ground", 0));
+    EXPECT_THAT(Ages(), testing::ElementsAre(std::chrono::seconds(1)));
+}
+
+TEST_F(FlightTapTest, AMessageHasNotTheAgeOfAnEqualOneOfAnEarlierIncarnation)
+{
+    _ground->Sent(To("uav", 1));
+    Pass(5);
+    _ground.reset();
+    _ground = Tap("ground");
+    _ground->Sent(To("uav", 1));
+    Pass(1);
+    _uav->Received(To("ground", 0));
+    EXPECT_THAT(Ages(), testing::ElementsAre(std::chrono::seconds(1)));
+}
+
 }  // namespace
 }  // namespace Rabit::WhatIf
