@@ -114,17 +114,26 @@ Recording::Recording(const std::vector<std::string> &names) : _names(names)
     FindLives();
     if (_lives.empty())
     {
-        throw std::runtime_error(names.front() + ": it has no messages of nodes, so nothing can be flown");
+        throw std::runtime_error(names.front() +
+                                 ": no node in it has messages, so nothing can be flown; name "
+                                 "the flight.mcap of a run, or what `rabit merge` writes");
     }
     if (_messages->Last() - _messages->First() > Longest)
     {
-        throw std::runtime_error(names.front() + ": it is longer than a day, and is not flown");
+        throw std::runtime_error(names.front() +
+                                 ": more than a day is not flown; name fewer or shorter recordings");
     }
     if (_lives.size() > MostLives)
     {
         throw std::runtime_error(names.front() + ": it has " + std::to_string(_lives.size()) +
-                                 " lives of nodes, and no more than " + std::to_string(MostLives) +
-                                 " are flown");
+                                 " incarnations of nodes, and no more than " + std::to_string(MostLives) +
+                                 " are flown; name fewer recordings");
+    }
+    if (PairSeconds() > MostPairSeconds)
+    {
+        throw std::runtime_error(names.front() +
+                                 ": too many nodes for too long, which would take hours; name the recordings "
+                                 "of fewer nodes, or shorter ones");
     }
     for (RecordedLife &life : _lives)
     {
@@ -243,6 +252,21 @@ void Recording::AddLife(RecordedLife life)
         }
     }
     _lives.push_back(std::move(life));
+}
+
+double Recording::PairSeconds() const
+{
+    double together = 0;
+    for (const RecordedLife &one : _lives)
+    {
+        for (const RecordedLife &other : _lives)
+        {
+            const Time begin = std::max({one.Begin, other.Begin, _messages->First()});
+            const Time end = std::min({one.End, other.End, _messages->Last()});
+            together += end > begin ? 1e-9 * static_cast<double>(end - begin) : 0;
+        }
+    }
+    return together;
 }
 
 void Recording::AddUnrecorded()

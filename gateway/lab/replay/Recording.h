@@ -42,6 +42,9 @@ public:
     static constexpr std::size_t MostLives = 1000;
     // Longest recording that is flown.
     static constexpr Time Longest = Time{24} * 3600 * 1'000'000'000;
+    // Most seconds, summed over each node with each other one and with itself, that are flown: about an hour
+    // of a processor. Ten nodes may fly for a day, and a hundred for an hour.
+    static constexpr double MostPairSeconds = 5e7;
 
     // Registers the types of the recording. Throws std::runtime_error if a file cannot be read, or if the
     // files cannot be flown.
@@ -76,6 +79,8 @@ private:
     void FindLives();
     void AddLife(RecordedLife life);
     void AddUnrecorded();
+    // How long each two lives are there together, summed.
+    double PairSeconds() const;
     void FindUses(const Mcap::Contents &contents);
     GatewayConfig ConfigOf(const RecordedLife &life);
 

@@ -342,6 +342,20 @@ TEST_F(ReplayTest, ARecordingThatClaimsToLastYearsIsRefused)
     EXPECT_THROW(Recording({Path()}), std::runtime_error);
 }
 
+TEST_F(ReplayTest, ARecordingThatClaimsManyNodesForADayIsRefused)
+{
+    FlightRecording recording;
+    for (int node = 0; node < 1000; ++node)
+    {
+        recording.AddLife("uav" + std::to_string(node), 1, 0, 86000);
+    }
+    const std::uint16_t posted = recording.AddPosted("uav1", "Track");
+    recording.Put(posted, 0, 10);
+    recording.Put(posted, 86000, 10);
+    recording.Save(Path());
+    EXPECT_THROW(Recording({Path()}), std::runtime_error);
+}
+
 // A sender and a receiver. All messages are equal.
 class FlightTapTest : public testing::Test
 {
