@@ -3,6 +3,7 @@
 #include <rabit/gateway/GatewayTap.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "clocks/GpsTime.h"
@@ -23,6 +24,16 @@ constexpr Duration ShortestFleetGap = std::chrono::milliseconds(100);
 std::string CounterName(const GatewayConfig &config)
 {
     return config.Name == GatewayConfig().Name ? config.Node : config.Node + "@" + config.Name;
+}
+
+std::vector<double> BudgetsOf(const GatewayConfig &config)
+{
+    std::vector<double> budgets;
+    for (const PathRule &path : config.Paths)
+    {
+        budgets.push_back(path.Radio.Budget.value_or(std::numeric_limits<double>::infinity()));
+    }
+    return budgets;
 }
 
 const GatewayConfig &Validated(const GatewayConfig &config)
@@ -155,7 +166,7 @@ GatewayManager::Parts::Parts(Closed /*tag*/, const GatewayConfig &config,
       _incarnation(_links.Incarnation()),
       _source(_workspace.GetClock()),
       _subscriptions(_config.Subscribe, _origins, _workspace, Handlers(), _config.Tap),
-      _choice(transports.size()),
+      _choice(transports.size(), BudgetsOf(config)),
       _fleet(std::make_shared<Gateway::Fleet>()),
       _exploration(exploration)
 {

@@ -57,11 +57,16 @@ void GatewayManager::Parts::TakeIn(std::size_t path, const PeerTable::Change &he
     {
         Forget(node, path, now);
     }
-    if (_paths.size() > 1 && heard.Missed)
+    for (const std::string &node : heard.Missed)
     {
-        for (const PeerTable::Peer *peer : beats.Peers().Heard())
+        // That path comes last, since it is compared with the others.
+        for (std::size_t i = 1; i <= _paths.size(); ++i)
         {
-            _choice.Missed(peer->Node, path, peer->Beats, now);
+            const std::size_t counted = (path + i) % _paths.size();
+            if (const PeerTable::Peer *const peer = _paths[counted]->Beats().Peers().Find(node))
+            {
+                _choice.Missed(node, counted, peer->Beats, now);
+            }
         }
     }
     if (_paths.size() > 1 && (heard.State || heard.NewLife || heard.Offers))

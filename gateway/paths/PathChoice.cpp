@@ -1,12 +1,19 @@
 #include "paths/PathChoice.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace Rabit
 {
 
 using Gateway::NodeState;
+
+PathChoice::PathChoice(std::size_t paths, std::vector<double> budgets)
+    : _paths(paths), _budgets(std::move(budgets))
+{
+    _budgets.resize(paths, std::numeric_limits<double>::infinity());
+}
 
 PathChoice::Node &PathChoice::NodeOf(const std::string &node)
 {
@@ -17,11 +24,10 @@ PathChoice::Node &PathChoice::NodeOf(const std::string &node)
 
 void PathChoice::Fail(Way &way, Duration now)
 {
-    if (way.FailedAt && now - *way.FailedAt > Sound)
+    if (way.RestsUntil && now - *way.RestsUntil > Sound)
     {
         way.Rest.Reset();
     }
-    way.FailedAt = now;
     way.RestFor = way.Rest.Next();
     way.RestsUntil = now + way.RestFor;
 }
@@ -74,12 +80,27 @@ void PathChoice::Missed(const std::string &node, std::size_t path, const BeatCou
     const auto came = static_cast<double>(beats.Heard() - before.Heard());
     way.Missed = std::max(way.Missed - MissedForgiven * came, 0.0) +
                  static_cast<double>(beats.Missed() - before.Missed());
-    if (way.Missed >= MostMissed)
+    const bool isOver = way.Missed >= MostMissed;
+    way.Missed = std::min(way.Missed, MostMissed);
+    if (isOver && beats.Missed() > before.Missed() && !way.Rests(now) && IsAnyBetter(of, path, now))
     {
-        way.Missed = MostMissed;  // the next loss makes it fail again
         Fail(way, now);
         Choose(node, of, now);
     }
+}
+
+bool PathChoice::IsAnyBetter(const Node &node, std::size_t path, Duration now) const
+{
+    for (std::size_t other = 0; other < _paths; ++other)
+    {
+        const Way &way = node.Ways[other];
+        if (other != path && way.State == NodeState::UP && !way.Rests(now) && way.Missed <= MostMissed / 2 &&
+            _budgets[other] >= _budgets[path])
+        {
+            return true;
+        }
+    }
+    return false;
 }
 
 bool PathChoice::Unanswered(const std::string &node, Duration now)
@@ -140,7 +161,7 @@ void PathChoice::ChooseHeard(Node &node, Duration now)
         {
             continue;
         }
-        const bool rests = way.RestsUntil && *way.RestsUntil > now;
+        const bool rests = way.Rests(now);
         if (rests)
         {
             _due = _due ? std::min(*_due, *way.RestsUntil) : *way.RestsUntil;
@@ -168,7 +189,7 @@ void PathChoice::Choose(const std::string &name, Node &node, Duration now)
     for (std::size_t path = first; path < _paths && !chosen; ++path)
     {
         const Way &way = node.Ways[path];
-        if (way.State == NodeState::UP && (!way.RestsUntil || *way.RestsUntil <= now))
+        if (way.State == NodeState::UP && !way.Rests(now))
         {
             chosen = path;
         }

@@ -22,11 +22,16 @@ namespace Rabit
 //
 // - A node is reached by the first path on which it is UP, which has not failed lately, and by which the node
 //   hears this one: each node says of others that it hears them by a later path alone.
-// - A path fails for a node when the node stops being UP on it, or when many of its beats do not come by it:
-//   beats that were missed are counted, and a beat that came takes MissedForgiven of that count. After it is
-//   UP again, other paths are preferred for a second, and twice as long after each further failure, up to
-//   half a minute. A path that has not failed for a minute counts as sound again. So a path that comes and
-//   goes is left alone, even if it goes for less time than makes a node STALE.
+// - A path fails for a node when the node stops being UP on it. After it is UP again it rests: other paths
+// are
+//   preferred for a second, and twice as long after each further failure, up to half a minute. A path that
+//   has not failed for ten seconds since its rest counts as sound again. So a path that comes and goes is
+//   left alone.
+// - A path fails as well when many of the node's beats do not come by it, even if it goes for less time than
+//   makes a node STALE: beats that were missed are counted, and a beat that came takes MissedForgiven of that
+//   count. That holds only if another path misses half as many at most and has no smaller budget, since links
+//   repair losses, and a slow path cannot carry what a fast one does. Beats that are missed during a rest are
+//   no further failure.
 // - If the node is UP on no path, the choice stays as it was.
 // - While queue messages for a node are unanswered for longer than usual, and while the node itself sends by
 //   another path, link frames go by a second path as well (Second), since nobody knows yet which of them
@@ -49,20 +54,22 @@ public:
     static constexpr Duration AnswersToo = std::chrono::milliseconds(500);
     static constexpr Backoff::Settings Rest{.First = std::chrono::seconds(1),
                                             .Longest = std::chrono::seconds(30)};
-    static constexpr Duration Sound = std::chrono::seconds(60);
+    static constexpr Duration Sound = std::chrono::seconds(10);
     // One loss in ten makes a path fail about once in some minutes, one in five twice a minute.
     static constexpr double MostMissed = 4.0;
     static constexpr double MissedForgiven = 0.25;
 
-    explicit PathChoice(std::size_t paths) : _paths(paths) {}
+    // `budgets`: bytes a second that each path may carry; a path without a number has no limit.
+    explicit PathChoice(std::size_t paths, std::vector<double> budgets = {});
 
     std::size_t Paths() const { return _paths; }
     // The state of the node on a path, as its beats there tell, and whether they say that it hears this node
     // by that path and by no better one.
     void Heard(const std::string &node, std::size_t path, Gateway::NodeState state, bool hearsHereFirst,
                Duration now);
-    // Beats of the node did not come by that path; `beats` counts all of its incarnation that did or did not.
-    // Before Heard tells what the beat after them says.
+    // Counts the node's beats that came by that path, and that did not; `beats` counts all of its
+    // incarnation. To be called when beats did not come, for the other paths first, and before Heard tells
+    // what the beat after them says.
     void Missed(const std::string &node, std::size_t path, const BeatCount &beats, Duration now);
     // A queue message for the node remains unanswered for longer than usual. Returns true if frames go by a
     // second path from now on.
@@ -97,10 +104,11 @@ private:
         Backoff Rest{PathChoice::Rest};
         Duration RestFor{0};  // after the last failure
         std::optional<Duration> RestsUntil;
-        std::optional<Duration> FailedAt;
-        BeatCount Beats;             // when some were missed last
+        BeatCount Beats;             // when they were counted last
         double Missed = 0.0;         // lately
         Duration CameAt = -Silence;  // the last frame of the links that came by it first
+
+        bool Rests(Duration now) const { return RestsUntil && *RestsUntil > now; }
     };
     struct Node
     {
@@ -115,10 +123,14 @@ private:
 
     Node &NodeOf(const std::string &node);
     static void Fail(Way &way, Duration now);
+    // True if there is a path that misses clearly fewer beats than that one, which misses many, and that may
+    // carry as much.
+    bool IsAnyBetter(const Node &node, std::size_t path, Duration now) const;
     void ChooseHeard(Node &node, Duration now);
     void Choose(const std::string &name, Node &node, Duration now);
 
     const std::size_t _paths;
+    std::vector<double> _budgets;  // of each path
     std::map<std::string, Node, std::less<>> _nodes;
     std::vector<std::string> _changed;
     std::optional<Duration> _due;

@@ -109,7 +109,8 @@ void Presence::WakeIf(bool somethingCame)
 
 void Presence::Served::Clear()
 {
-    Change.Beat = Change.Missed = Change.State = Change.NewLife = Change.Offers = false;
+    Change.Beat = Change.State = Change.NewLife = Change.Offers = false;
+    Change.Missed.clear();
     Change.Forgotten.clear();
     StatesTold.clear();
     StatesAsked.clear();
@@ -291,7 +292,7 @@ void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
 void Presence::Note(const PeerTable::Change &change, const std::string &node, Served &served)
 {
     served.Change.Beat |= change.Beat;
-    served.Change.Missed |= change.Missed;
+    served.Change.Missed.insert(served.Change.Missed.end(), change.Missed.begin(), change.Missed.end());
     served.Change.State |= change.State;
     served.Change.NewLife |= change.NewLife;
     served.Change.Offers |= change.Offers;

@@ -77,14 +77,14 @@ TEST_F(PathChoiceTest, APathThatComesAndGoesRestsForLongerAndLonger)
     EXPECT_EQ(ChosenAt(14s), Mesh);
 }
 
-TEST_F(PathChoiceTest, APathThatWasSoundForAMinuteRestsForASecondAgain)
+TEST_F(PathChoiceTest, APathThatWasSoundForTenSecondsRestsForASecondAgain)
 {
     Hear(Mesh, NodeState::UP, 0s);
     Hear(Modem, NodeState::UP, 0s);
     FailMesh(5s);
     FailMesh(7s);
-    FailMesh(70s);
-    EXPECT_EQ(ChosenAt(72s), Mesh);
+    FailMesh(21s);
+    EXPECT_EQ(ChosenAt(23s), Mesh);
 }
 
 TEST_F(PathChoiceTest, IfAllPathsAreDeadTheLastOneStays)
@@ -125,9 +125,10 @@ TEST_F(PathChoiceTest, BothPathsAreUsedUntilTheNodeIsHeardOnTheChosenOne)
     EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both), std::nullopt);
 }
 
-// Beats of the mesh that come and do not come, in turns, from that time on. Returns when the last
+// Beats of a path that come and do not come, in turns, from that time on. Returns when the last
 // loss was noticed.
-PathChoice::Duration Lose(PathChoice &choice, int missed, int came, int times, PathChoice::Duration now)
+PathChoice::Duration Lose(PathChoice &choice, int missed, int came, int times, PathChoice::Duration now,
+                          std::size_t path = Mesh)
 {
     BeatCount beats;
     std::uint64_t number = 1;
@@ -142,7 +143,7 @@ PathChoice::Duration Lose(PathChoice &choice, int missed, int came, int times, P
             now += 500ms;
             if (j == 0)
             {
-                choice.Missed("uav1", Mesh, beats, now);
+                choice.Missed("uav1", path, beats, now);
                 noticed = now;
             }
         }
@@ -160,6 +161,33 @@ TEST_F(PathChoiceTest, APathByWhichManyBeatsDoNotComeIsLeftThoughItStaysUp)
     EXPECT_EQ(ChosenAt(now + 1s), Mesh);
     EXPECT_TRUE(choice.TakeFirstHeardChanged());
     EXPECT_TRUE(choice.FirstHeardOn(Modem).empty());
+}
+
+TEST_F(PathChoiceTest, BeatsThatAreMissedDuringARestAreNoSecondFailure)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    const PathChoice::Duration now = Lose(choice, 2, 2, 3, 5s);
+    Lose(choice, 2, 1, 1, now);
+    EXPECT_EQ(ChosenAt(now + 900ms), Modem);
+    EXPECT_EQ(ChosenAt(now + 1s), Mesh);
+}
+
+TEST_F(PathChoiceTest, ALossyPathIsKeptIfTheOtherLosesAsMuch)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    Lose(choice, 2, 2, 3, 5s, Modem);
+    EXPECT_EQ(ChosenAt(Lose(choice, 2, 2, 3, 20s)), Mesh);
+}
+
+TEST_F(PathChoiceTest, ALossyPathIsKeptIfTheOtherHasASmallerBudget)
+{
+    PathChoice small(2, {1e6, 1500});
+    small.Heard("uav1", Mesh, NodeState::UP, false, 0s);
+    small.Heard("uav1", Modem, NodeState::UP, false, 0s);
+    small.TakeChanged(Lose(small, 2, 2, 3, 5s));
+    EXPECT_EQ(small.Of("uav1"), Mesh);
 }
 
 TEST_F(PathChoiceTest, APathThatLosesABeatInTenIsKept)

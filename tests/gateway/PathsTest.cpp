@@ -440,6 +440,22 @@ TEST_F(PathsTest, APathThatLosesABeatInTenStaysInUse)
     }
 }
 
+// Links repair what the mesh loses, and the modem cannot carry what the mesh does.
+TEST_F(PathsTest, AMeshThatLosesAThirdIsBetterThanASmallModem)
+{
+    AddBoth(1500);
+    RunFor(3s);
+    mesh.SetFaults("*", "*", {.Loss = 0.3, .Delay = 1ms});
+    constexpr int seconds = 300;
+    int onMesh = 0;
+    for (int i = 0; i < seconds; ++i)
+    {
+        RunFor(1s);
+        onMesh += Gateway::FindNode(FleetOf("ground"), "uav1")->path == "mesh" ? 1 : 0;
+    }
+    EXPECT_GE(onMesh, seconds * 3 / 5);
+}
+
 // Faults of both networks at random: cut in one direction or both, lossy, slow, reordering.
 class PathsUnderFaults : public PathsTest, public ::testing::WithParamInterface<int>
 {
