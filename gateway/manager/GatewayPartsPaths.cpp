@@ -45,7 +45,9 @@ void GatewayManager::Parts::MakePaths(const std::vector<std::shared_ptr<Transpor
                  const std::optional<std::size_t> second = _choice.Second(node, Now(), queue.empty());
                  return second && _paths[*second]->MayTakeCopy(node, queue, bytes) ? second : std::nullopt;
              },
-             .Sent = [this](std::size_t path) { _paths[path]->CopySent(); }});
+             .Sent = [this](std::size_t path) { _paths[path]->CopySent(); },
+             .TakesAnswers = [this](std::string_view node)
+             { return _choice.Second(node, Now(), true).has_value(); }});
     }
 }
 

@@ -208,6 +208,10 @@ void LinkDriver::NoteCame(const SampleInfo &info, const LinkFrame &frame, std::s
         return;
     }
     Came &came = node->second;
+    if (info.Incarnation < came.Incarnation)
+    {
+        return;  // a late frame
+    }
     if (came.Incarnation != info.Incarnation || frame.Time > came.Newest)
     {
         came.Incarnation = info.Incarnation;
@@ -467,6 +471,12 @@ LinkRefusal LinkDriver::Enqueue(const std::string &node, const std::string &queu
 void LinkDriver::Send(const LinkFrame &frame)
 {
     _outbox.Add(frame);
+}
+
+// Frames with messages of class bulk never go by a second path.
+bool LinkDriver::SendsAcksAlone(std::string_view destination) const
+{
+    return _second.TakesAnswers && _second.TakesAnswers(destination);
 }
 
 void LinkDriver::OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,

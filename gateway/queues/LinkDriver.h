@@ -73,6 +73,8 @@ public:
                                                  std::size_t bytesOnTheAir)>
             Choose;
         std::function<void(std::size_t path)> Sent;
+        // True if frames without messages go by a second path as well. Called with the links locked.
+        std::function<bool(std::string_view node)> TakesAnswers;
     };
     void SetSecondPath(SecondPath second) { _second = std::move(second); }
     // Sends nothing more and receives nothing more. Messages without an outcome get one. Cannot be reopened.
@@ -144,6 +146,7 @@ public:
 private:
     // LinkOutput; called by LinkNode with the mutex held.
     void Send(const LinkFrame &frame) override;
+    bool SendsAcksAlone(std::string_view destination) const override;
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
 

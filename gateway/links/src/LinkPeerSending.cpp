@@ -116,7 +116,10 @@ bool LinkPeer::SendData(LinkSender &sender, std::size_t most, LinkTime now)
         return false;
     }
     LinkFrame &frame = BeginFrame(true, now);
-    AddAcks(frame, most / 2, false);
+    if (!_context.Output.SendsAcksAlone(_name))
+    {
+        AddAcks(frame, most / 2, false);
+    }
     const LinkSender::Filled filled = sender.Fill(frame, most, now);
     // A part that was cut for a whole datagram leaves no room for them: they go with the next frame.
     if (!frame.Acks.empty() && frame.HasData && frame.Data.Items.front().Payload.size() > most / 4 &&

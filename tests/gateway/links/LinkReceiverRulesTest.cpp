@@ -206,6 +206,19 @@ TEST_F(LinkReceiverRules, R4_a_repeated_message_is_acknowledged_only)
     EXPECT_EQ(a.ReceiverCounters().Duplicates, 1U);
 }
 
+TEST_F(LinkReceiverRules, Acknowledgements_go_in_frames_of_their_own_if_the_driver_wants_that)
+{
+    OpenSession();
+    a.AcksAlone = true;
+    a.Enqueue("x");
+    a.Hear(Data(2, {"2"}));
+    a.Pass(10ms);
+    const auto acks = a.TakeAcks();
+    ASSERT_THAT(acks, SizeIs(1));
+    EXPECT_FALSE(acks[0].Fields.HasData);
+    EXPECT_THAT(a.TakeDatas(), SizeIs(1));
+}
+
 TEST_F(LinkReceiverRules, R4_what_comes_after_a_gap_is_held_and_delivered_when_the_gap_is_filled)
 {
     OpenSession();

@@ -115,6 +115,8 @@ public:
     // The answer of the local queues, and the room that they report.
     LocalQueueResult Answer = LocalQueueResult::Ok;
     std::size_t RoomLeft = 1000;
+    // Acknowledgements go in frames without messages.
+    bool AcksAlone = false;
     // Number of messages that the local queues take before they are full; counts down.
     std::size_t Places = 1'000'000;
     // Queues whose names begin with NoQueue, and the type NoType, are not accepted.
@@ -139,6 +141,7 @@ public:
             _hellos.emplace_back(frame);
         }
     }
+    bool SendsAcksAlone(std::string_view) const override { return AcksAlone; }
     void OnOutcome(std::uint64_t id, std::string_view, std::string_view, LinkOutcome outcome) override
     {
         _outcomes.emplace_back(id, outcome);

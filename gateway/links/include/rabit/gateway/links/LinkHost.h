@@ -77,6 +77,9 @@ public:
     // and types are valid as long as the LinkNode, its payloads as long as their owners are held; its
     // destination and queue only until that node is forgotten, which may be soon: copy them.
     virtual void Send(const LinkFrame &frame) = 0;
+    // True if acknowledgements for that node go in frames of their own, and not in those with messages: then
+    // the driver may send them by another path as well.
+    virtual bool SendsAcksAlone(std::string_view /*destination*/) const { return false; }
     // The outcome of an accepted message is known.
     virtual void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                            LinkOutcome outcome) = 0;
