@@ -258,6 +258,7 @@ private:
 
     void AnswerQuestions(Duration now)
     {
+        _files.BeginTurn();
         _questions.Answer(now,
                           [this](const std::string &node, const Question &question)
                           {

@@ -66,6 +66,7 @@ std::optional<Answer> FileAnswers::Of(const std::string &node, const Question &q
     };
     if (file.Number() < 0 || ::fstat(file.Number(), &status) != 0 || !S_ISREG(status.st_mode))
     {
+        _facts.erase(question.name);
         return answer;
     }
     if (question.kind == Kind::FACTS)
@@ -98,7 +99,8 @@ std::optional<Answer> FileAnswers::Of(const std::string &node, const Question &q
     return answer;
 }
 
-// A file that grows meanwhile is hashed up to the size that it had at the beginning.
+// A file that grows meanwhile is hashed up to the size that it had at the beginning. One that is replaced or
+// cut off is hashed anew.
 bool FileAnswers::AnswerFacts(int file, const Question &question, Answer &answer)
 {
     struct stat status
@@ -111,18 +113,29 @@ bool FileAnswers::AnswerFacts(int file, const Question &question, Answer &answer
     }
     if (_facts.size() >= MostFacts && !_facts.contains(question.name))
     {
-        _facts.clear();
+        std::erase_if(_facts, [](const auto &known) { return !known.second.Work; });
+        if (_facts.size() >= MostFacts)
+        {
+            return false;
+        }
     }
     Facts &facts = _facts[question.name];
     const auto size = static_cast<std::uint64_t>(status.st_size);
     const std::int64_t changedAt = status.st_mtim.tv_sec * 1'000'000'000 + status.st_mtim.tv_nsec;
-    if (!facts.Work && (facts.Hash.empty() || facts.Size != size || facts.ChangedAt != changedAt))
+    const bool isAnother = facts.Device != status.st_dev || facts.Inode != status.st_ino;
+    const bool hasChanged = facts.Work
+                                ? size < facts.Size
+                                : facts.Hash.empty() || facts.Size != size || facts.ChangedAt != changedAt;
+    if (isAnother || hasChanged)
     {
-        facts = {size, changedAt, {}, std::make_unique<FileHash>(size)};
+        facts = {size, changedAt, status.st_dev, status.st_ino, {}, std::make_unique<FileHash>(size)};
     }
     if (facts.Work)
     {
-        if (facts.Work->Advance(file, HashedAtOnce) && !facts.Work->IsDone())
+        const std::uint64_t before = facts.Work->Offset();
+        const bool isReadable = facts.Work->Advance(file, _mayHash);
+        _mayHash -= facts.Work->Offset() - before;
+        if (isReadable && !facts.Work->IsDone())
         {
             return false;
         }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <sys/types.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -22,8 +24,8 @@ class FileAnswers
 public:
     // Bytes in one answer.
     static constexpr std::uint64_t LargestPart = 64U << 10;
-    // Bytes of a file that one call hashes, so that a large file holds up nobody: a tenth of a second of a
-    // slow processor.
+    // Bytes that are hashed in one turn, of all files together, so that large files hold up nobody: a tenth
+    // of a second of a slow processor.
     static constexpr std::uint64_t HashedAtOnce = 16U << 20;
 
     using MayFetch = std::function<bool(const std::string &node)>;
@@ -33,7 +35,11 @@ public:
     {
     }
 
-    // The question must be of the kind FACTS or PART. Empty: the file is being hashed; ask again, soon.
+    // Begins a turn: HashedAtOnce bytes may be hashed until the next one.
+    void BeginTurn() { _mayHash = HashedAtOnce; }
+
+    // The question must be of the kind FACTS or PART. Empty: the file is being hashed, or others are; ask
+    // again in the next turn.
     std::optional<Answer> Of(const std::string &node, const Question &question);
 
 private:
@@ -41,10 +47,12 @@ private:
     {
         std::uint64_t Size = 0;
         std::int64_t ChangedAt = 0;
+        dev_t Device = 0;
+        ino_t Inode = 0;
         std::vector<std::uint8_t> Hash;
         std::unique_ptr<FileHash> Work;  // until the hash is there
     };
-    // Hashes that are remembered: a large file takes seconds.
+    // Hashes that are remembered or under way: a large file takes seconds.
     static constexpr std::size_t MostFacts = 64;
 
     // Returns false while the file is being hashed.
@@ -53,6 +61,7 @@ private:
     const std::string _folder;
     const MayFetch _mayFetch;
     std::map<std::string, Facts> _facts;
+    std::uint64_t _mayHash = HashedAtOnce;  // in this turn
 };
 
 }  // namespace Rabit::Backfill

@@ -26,8 +26,9 @@ FileHash::FileHash(std::uint64_t size) : _size(size), _context(EVP_MD_CTX_new())
 
 bool FileHash::Advance(int file, std::uint64_t most)
 {
-    std::vector<std::uint8_t> room(1U << 20);
     const std::uint64_t end = _offset + std::min(most, _size - _offset);
+    std::vector<std::uint8_t> room(
+        static_cast<std::size_t>(std::min<std::uint64_t>(end - _offset, 1U << 20)));
     while (_context && _offset < end)
     {
         const auto wanted = static_cast<std::size_t>(std::min<std::uint64_t>(room.size(), end - _offset));

@@ -19,6 +19,8 @@ public:
 
     // Reads up to `most` bytes more. Returns false if they cannot be read: then there is no hash.
     bool Advance(int file, std::uint64_t most);
+    // Bytes read so far.
+    std::uint64_t Offset() const { return _offset; }
     bool IsDone() const { return _offset == _size; }
     // The hash; empty if it is not done.
     std::vector<std::uint8_t> Take();

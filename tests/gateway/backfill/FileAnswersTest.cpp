@@ -44,12 +44,25 @@ protected:
         question.to = to;
         question.number = 77;
         ++calls;
-        std::optional<Answer> answer;
-        while (!(answer = shown->Of(node, question)))
+        std::optional<Answer> answer = shown->Of(node, question);
+        for (int turn = 0; !answer && turn < 1000; ++turn)
         {
             ++calls;
+            shown->BeginTurn();
+            answer = shown->Of(node, question);
         }
-        return *answer;
+        EXPECT_TRUE(answer) << name << " has no answer";
+        return answer.value_or(Answer());
+    }
+    // Makes a file of that many zeros. Returns a question about it.
+    Question Zeros(const std::string &name, std::uint64_t size)
+    {
+        std::ofstream(folder / "shown" / name) << std::string();
+        std::filesystem::resize_file(folder / "shown" / name, size);
+        Question question;
+        question.kind = Kind::FACTS;
+        question.name = name;
+        return question;
     }
 
     int calls = 0;
@@ -102,6 +115,63 @@ TEST_F(FileAnswersTest, AFileThatGrowsWhileItIsHashedIsToldAsItWas)
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->size, 2 * FileAnswers::HashedAtOnce);
     EXPECT_EQ(Ask("large").size, 3 * FileAnswers::HashedAtOnce);
+}
+
+TEST_F(FileAnswersTest, OneTurnHashesALimitedPartOfAllFilesTogether)
+{
+    const Question first = Zeros("first", FileAnswers::HashedAtOnce - 1);
+    const Question second = Zeros("second", FileAnswers::HashedAtOnce);
+    EXPECT_TRUE(shown->Of("ground", first));
+    EXPECT_FALSE(shown->Of("ground", second));
+    shown->BeginTurn();
+    EXPECT_TRUE(shown->Of("ground", second));
+}
+
+TEST_F(FileAnswersTest, AFileThatIsReplacedWhileItIsHashedIsHashedAnew)
+{
+    const Question question = Zeros("large", 2 * FileAnswers::HashedAtOnce);
+    EXPECT_FALSE(shown->Of("ground", question));
+    Zeros("new", 2 * FileAnswers::HashedAtOnce);
+    std::ofstream(folder / "shown" / "new", std::ios::in | std::ios::out) << "new";
+    std::filesystem::rename(folder / "shown" / "new", folder / "shown" / "large");
+    const Answer answer = Ask("large");
+    const int file = ::open((folder / "shown" / "large").c_str(), O_RDONLY);
+    EXPECT_EQ(HashOf(file, answer.size), answer.bytes);
+    ::close(file);
+}
+
+TEST_F(FileAnswersTest, AFileThatIsCutOffWhileItIsHashedIsHashedAnew)
+{
+    const Question question = Zeros("large", 2 * FileAnswers::HashedAtOnce);
+    EXPECT_FALSE(shown->Of("ground", question));
+    std::filesystem::resize_file(folder / "shown" / "large", 5);
+    EXPECT_EQ(Ask("large").size, 5U);
+}
+
+TEST_F(FileAnswersTest, ManyOtherFilesDoNotInterruptAHash)
+{
+    const Question question = Zeros("large", 2 * FileAnswers::HashedAtOnce);
+    EXPECT_FALSE(shown->Of("ground", question));
+    for (int other = 0; other < 100; ++other)
+    {
+        Zeros(std::to_string(other), 1);
+        Ask(std::to_string(other));
+    }
+    shown->BeginTurn();
+    EXPECT_TRUE(shown->Of("ground", question));
+}
+
+TEST_F(FileAnswersTest, ManyLargeFilesAreAllHashedInTheEnd)
+{
+    for (int name = 0; name < 100; ++name)
+    {
+        EXPECT_EQ(shown->Of("ground", Zeros(std::to_string(name), FileAnswers::HashedAtOnce)).has_value(),
+                  name == 0);
+    }
+    for (int name = 1; name < 100; ++name)
+    {
+        EXPECT_EQ(Ask(std::to_string(name)).result, Result::OK);
+    }
 }
 
 TEST_F(FileAnswersTest, PartsAreSentAsFarAsTheFileGoes)
