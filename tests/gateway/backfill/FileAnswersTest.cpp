@@ -111,6 +111,7 @@ TEST_F(FileAnswersTest, AFileThatGrowsWhileItIsHashedIsToldAsItWas)
     question.name = "large";
     EXPECT_FALSE(shown->Of("ground", question));
     std::filesystem::resize_file(large, 3 * FileAnswers::HashedAtOnce);
+    shown->BeginTurn();
     const std::optional<Answer> answer = shown->Of("ground", question);
     ASSERT_TRUE(answer);
     EXPECT_EQ(answer->size, 2 * FileAnswers::HashedAtOnce);
