@@ -76,7 +76,7 @@ LinkStreams::Stream &LinkStreams::StreamOf(const LinkStream &link)
     stream.Node = &node->first;
     stream.Queue = &queue->first;
     const Importance importance = ImportanceOf(_rules, link.Destination, link.Queue);
-    stream.Id = link.Queue.empty() ? _schedule.AddStream(TrafficClass::Command, AirSchedule::LargestWeight)
+    stream.Id = link.Queue.empty() ? _schedule.AddStream(TrafficClass::Command)
                                    : _schedule.AddStream(importance.Class, importance.Weight);
     if (_byIndex.size() <= stream.Id.Index)
     {

@@ -19,9 +19,9 @@ namespace Rabit
 {
 
 // The queue links as streams of the schedule: each link one, of the class and weight of the first `send` rule
-// that fits, and for each node one for acknowledgements and hellos: of class command, and before other
-// commands, whatever their weight. A stream without anything to send for a minute is removed, and made again
-// when needed. An existing stream needs no allocation. Gateway's thread only.
+// that fits, and for each node one for acknowledgements and hellos, of class command. A stream without
+// anything to send for a minute is removed, and made again when needed. An existing stream needs no
+// allocation. Gateway's thread only.
 class LinkStreams
 {
 public:
