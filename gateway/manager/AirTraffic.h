@@ -33,11 +33,9 @@ namespace Rabit
 //
 // - The limit is the lower one of `radio: budget` and the capacity estimated from the peers' reports of late
 //   datagrams (CapacityEstimate).
-// - Streams are: the beats (class presence); for each node, acknowledgements and hellos (class command,
-// before
-//   other commands); the exchange of cards (class state, before other states); the texts of types that are
-//   asked for (class bulk); each link; each published message. A datagram is made when its turn has come,
-//   from the newest data.
+// - Streams are: the beats (class presence); for each node, acknowledgements and hellos (class command); the
+//   exchange of cards (class state, before other states); the texts of types that are asked for (class bulk);
+//   each link; each published message. A datagram is made when its turn has come, from the newest data.
 // - Each datagram is paid for with the bytes that the transport counted for it. DDS's own traffic is paid
 //   for, too, and a part of a budget is kept free for it when it is due.
 // - With a budget the exchange of keys may take half of it (DiscoveryTurns::SetKeyRate).

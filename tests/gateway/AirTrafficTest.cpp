@@ -299,43 +299,6 @@ TEST_F(AirTrafficTest, ReportsToAStationThatIsBusyWithALargeValueArriveSoon)
     EXPECT_LE(waits.back(), 1s);
 }
 
-// The station answers a report now and then, while a queue of the highest weight is full.
-TEST_F(AirTrafficTest, AcknowledgementsDoNotWaitForCommandsOfALargeWeight)
-{
-    GatewayConfig config = WithBudget(GroundConfig(), 1500);
-    config.Send.push_back({.To = "uav1", .Weight = 100.0});
-    SimulatedNode &ground = fleet.Add(config);
-    IdleManager &commands = ground.AddIdleManager("Commands");
-    AddAircraft(AircraftConfig("uav1"));
-    IdleManager &control = aircraft->AddIdleManager("MissionControl");
-    fleet.RunFor(10s);
-    const auto takeAll = [](IdleManager &manager)
-    {
-        std::shared_ptr<RabitMessage> message;
-        while (manager.GetManagerMessageQueue()->GetMessage(message))
-        {
-        }
-    };
-    Fly(60s, 1s, 1s,
-        [&](Duration passed)
-        {
-            if (passed % 20ms == 0s)
-            {
-                static_cast<void>(
-                    ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
-            }
-            if (passed % 1s == 0s)
-            {
-                ASSERT_TRUE(SendReport(1));
-            }
-            takeAll(commands);
-            takeAll(control);
-        });
-    const auto links = aircraft->Fleet().links;
-    ASSERT_EQ(links.size(), 1u);
-    EXPECT_LE(links[0].resent, 60u) << "of 60 reports: less than once each";
-}
-
 TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
 {
     GatewayConfig config = WithBudget(AircraftConfig("uav1"));

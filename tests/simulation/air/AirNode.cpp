@@ -28,7 +28,7 @@ AirNode::AirNode(std::size_t number, const AirScenario &scenario)
       _heard(scenario.Nodes)
 {
     _beat = {_schedule.AddStream(TrafficClass::Presence), _random.Between(Time(0), scenario.Beats)};
-    _acknowledgement = {_schedule.AddStream(TrafficClass::Command), Time(0)};
+    _acknowledgement = {_schedule.AddStream(TrafficClass::Presence), Time(0)};
     _command = {_schedule.AddStream(TrafficClass::Command), _random.Between(Time(0), 2 * scenario.Commands)};
     for (int i = 0; i < 2; ++i)
     {
