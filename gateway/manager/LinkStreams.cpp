@@ -11,8 +11,6 @@ namespace
 {
 
 constexpr LinkStreams::Duration Unused = std::chrono::minutes(1);
-// Acknowledgements of large messages must not hold up the commands of this node.
-constexpr double WeightOfAcks = 0.25;
 
 }  // namespace
 
@@ -78,7 +76,7 @@ LinkStreams::Stream &LinkStreams::StreamOf(const LinkStream &link)
     stream.Node = &node->first;
     stream.Queue = &queue->first;
     const Importance importance = ImportanceOf(_rules, link.Destination, link.Queue);
-    stream.Id = link.Queue.empty() ? _schedule.AddStream(TrafficClass::Command, WeightOfAcks)
+    stream.Id = link.Queue.empty() ? _schedule.AddStream(TrafficClass::Command)
                                    : _schedule.AddStream(importance.Class, importance.Weight);
     if (_byIndex.size() <= stream.Id.Index)
     {
