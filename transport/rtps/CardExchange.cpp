@@ -192,7 +192,7 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     }
     if (peer->Held.Size == 0 && !_greeting.Due())
     {
-        _greeting.Begin(now + FirstGreeting);
+        _greeting.Begin(now + FirstSummary);
     }
     peer->Held = peer->Wanted;
     return card;

@@ -64,9 +64,6 @@ public:
     // From a card's summary to the first request: its parts may be on their way.
     static constexpr std::chrono::milliseconds Patience{30};
     static constexpr std::chrono::milliseconds FirstSummary{100};
-    // From a newcomer's card to the first summary for it, without which it may not know of this node. The
-    // own card, which often changes when a first peer has come, may go meanwhile.
-    static constexpr std::chrono::milliseconds FirstGreeting{10};
     static constexpr std::chrono::milliseconds LongestSummary{2000};
     static constexpr double SummaryFactor = 1.5;
     // All of them are lost once in 100,000 times where 40 % of the datagrams are lost.

@@ -333,8 +333,8 @@ TEST_F(Exchanging, ANewcomerWhoseCardIsCompleteHearsOfANodeThatWasSilent)
     const Bytes card(100, 2);
     ASSERT_TRUE(Exchange.Received(
         {.From = Name(2), .Summary = SummaryOf(card), .HasPart = true, .Part = 0, .Bytes = card}, Now));
-    ASSERT_LE(Exchange.Due(), Now + CardExchange::FirstGreeting);
-    const auto greeting = Exchange.TakeDue(Now + CardExchange::FirstGreeting);
+    ASSERT_LE(Exchange.Due(), Now + CardExchange::FirstSummary);
+    const auto greeting = Exchange.TakeDue(Now + CardExchange::FirstSummary);
     ASSERT_TRUE(greeting);
     EXPECT_FALSE(greeting->To.has_value());
 }
