@@ -125,6 +125,17 @@ protected:
         }
     }
 
+    // The mesh no longer carries what `from` sends to `to`. Each command comes once, in order, and none late.
+    void ExpectCommandsInTimeWithout(const std::string &from, const std::string &to)
+    {
+        Command(1s);
+        mesh.SetFaults(from, to, {.Cut = true});
+        Command(5s);
+        RunFor(1s);
+        EXPECT_EQ(got, sent);
+        EXPECT_LE(longestGap, 250ms);
+    }
+
     void TakeCommands()
     {
         if (managers.count("uav1") == 0)
@@ -283,12 +294,7 @@ TEST_F(PathsTest, IfOnlyTheWayOutIsDeadCommandsComeByTheOtherPath)
 {
     AddBoth();
     RunFor(3s);
-    Command(1s);
-    mesh.SetFaults("ground", "uav1", {.Cut = true});
-    Command(5s);
-    RunFor(1s);
-    EXPECT_EQ(got, sent);
-    EXPECT_LE(longestGap, 250ms);
+    ExpectCommandsInTimeWithout("ground", "uav1");
 }
 
 // The commands come, and their acknowledgements are lost.
@@ -296,12 +302,7 @@ TEST_F(PathsTest, IfOnlyTheWayBackIsDeadCommandsGoOn)
 {
     AddBoth();
     RunFor(3s);
-    Command(1s);
-    mesh.SetFaults("uav1", "ground", {.Cut = true});
-    Command(5s);
-    RunFor(1s);
-    EXPECT_EQ(got, sent);
-    EXPECT_LE(longestGap, 250ms);
+    ExpectCommandsInTimeWithout("uav1", "ground");
 }
 
 // The acknowledgements would fit into the frames with pictures, which never go by the modem.
@@ -313,12 +314,7 @@ TEST_F(PathsTest, IfOnlyTheWayBackIsDeadAndFullOfPicturesCommandsGoOn)
     Add("uav1", aircraft, "MissionControl");
     RunFor(3s);
     picturesEach = Step;
-    Command(1s);
-    mesh.SetFaults("uav1", "ground", {.Cut = true});
-    Command(5s);
-    RunFor(1s);
-    EXPECT_EQ(got, sent);
-    EXPECT_LE(longestGap, 250ms);
+    ExpectCommandsInTimeWithout("uav1", "ground");
 }
 
 TEST_F(PathsTest, AnswersByASecondPathEndSoonAfterTheDoubt)

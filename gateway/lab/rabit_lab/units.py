@@ -78,7 +78,7 @@ def burst(value):
 
 
 def seed(value):
-    """Of random numbers: an integer of 64 bits."""
+    """The seed of random numbers: an integer of 64 bits, without sign."""
     if not re.fullmatch(r"[0-9]+", str(value)) or int(value) >= 2 ** 64:
         raise ValueError(f"`{value}`: a seed is a whole number from 0 to {2 ** 64 - 1}")
     return int(value)

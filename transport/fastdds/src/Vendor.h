@@ -137,6 +137,11 @@ struct ReaderPace
     std::uint32_t FirstAcknowledgementMs = 0;
 };
 
+inline Duration Milliseconds(std::uint32_t count)
+{
+    return {static_cast<std::int32_t>(count / 1000), count % 1000 * 1'000'000};
+}
+
 enum class ParticipantChange
 {
     Present,

@@ -190,11 +190,6 @@ protected:
 
 inline void AddProperties(rtps::PropertyPolicy & /*properties*/) {}
 
-inline Duration Milliseconds(std::uint32_t count)
-{
-    return {static_cast<std::int32_t>(count / 1000), count % 1000 * 1'000'000};
-}
-
 inline void SetPace(rtps::WriterAttributes &attributes, const WriterPace &pace)
 {
     attributes.times.heartbeatPeriod = Milliseconds(pace.HeartbeatMs);

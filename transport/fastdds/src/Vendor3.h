@@ -294,11 +294,6 @@ inline void AddProperties(rtps::PropertyPolicy &properties)
     }
 }
 
-inline Duration Milliseconds(std::uint32_t count)
-{
-    return {static_cast<std::int32_t>(count / 1000), count % 1000 * 1'000'000};
-}
-
 inline void SetPace(rtps::WriterAttributes &attributes, const WriterPace &pace)
 {
     attributes.times.heartbeat_period = Milliseconds(pace.HeartbeatMs);
