@@ -86,7 +86,9 @@ async function commandsAnAircraft(programs) {
   await becomes(async () => /(accepted|done)/.test(await page.locator('#commands li').first().getAttribute('data-progress')),
     async () => `it is called home; ${await fleet.text('#commands')}`);
   // An open page does not keep the ground station from ending in order.
-  assert.equal(await ground.end('SIGINT'), 0, ground.output.slice(-500));
+  // Its verdict on the flight is no matter of the page: a flight of four seconds has too few poses to judge.
+  assert.equal(typeof await ground.end('SIGINT'), 'number', `ended by a signal: ${ground.output.slice(-500)}`);
+  assert.match(ground.output, /^(Passed|Failed)$/m, 'the ground station gave its verdict');
   await becomes(async () => (await fleet.data('live')) === 'false', 'the page notices');
   assert.deepEqual(fleet.errors, []);
 }
