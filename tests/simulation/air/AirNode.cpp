@@ -15,7 +15,7 @@ constexpr std::size_t CommandBytes = 160;
 constexpr std::size_t TelemetryBytes = 190;
 constexpr double BulkOutbox = 65536.0;
 constexpr Time TelemetryEvery = 100ms;
-constexpr Time AcknowledgementEvery = 100ms;
+constexpr Time AcknowledgementEvery = 250ms;  // LinkOptions::LongestAckDelay
 constexpr Time RateEvery = 50ms;
 
 }  // namespace
@@ -28,7 +28,7 @@ AirNode::AirNode(std::size_t number, const AirScenario &scenario)
       _heard(scenario.Nodes)
 {
     _beat = {_schedule.AddStream(TrafficClass::Presence), _random.Between(Time(0), scenario.Beats)};
-    _acknowledgement = {_schedule.AddStream(TrafficClass::Presence), Time(0)};
+    _acknowledgement = {_schedule.AddStream(TrafficClass::Command), Time(0)};
     _command = {_schedule.AddStream(TrafficClass::Command), _random.Between(Time(0), 2 * scenario.Commands)};
     for (int i = 0; i < 2; ++i)
     {
@@ -52,12 +52,12 @@ void AirNode::Offer(Time now)
 {
     if (now >= _beat.NextAt)
     {
-        _schedule.Ready(_beat.Stream, 90 + 8 * _scenario.Nodes);
+        _schedule.Ready(_beat.Stream, _scenario.ReportBytes());
         _beat.NextAt += _scenario.Beats;
     }
     if (_acknowledges && now >= _acknowledgement.NextAt)
     {
-        _schedule.Ready(_acknowledgement.Stream, 90 + 8 * _scenario.Nodes);
+        _schedule.Ready(_acknowledgement.Stream, _scenario.ReportBytes());
         _acknowledgement.NextAt = now + AcknowledgementEvery;
         _acknowledges = false;
     }
@@ -134,7 +134,7 @@ AirPacket AirNode::Make(StreamId stream, Time now)
     packet.SentAt = now;
     if (stream == _beat.Stream || stream == _acknowledgement.Stream)
     {
-        packet.Bytes = 90 + 8 * _scenario.Nodes;
+        packet.Bytes = _scenario.ReportBytes();
         for (Heard &heard : _heard)
         {
             packet.Reports.push_back(std::exchange(heard.Fresh, std::nullopt));

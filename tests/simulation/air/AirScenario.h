@@ -29,7 +29,7 @@ struct AirScenario
     // Time between commands of a node, on average.
     Time Commands = std::chrono::milliseconds(400);
     Time Beats = std::chrono::milliseconds(500);
-    bool Acknowledged = true;  // bulk goes to the last node, which says every 100 ms what came
+    bool Acknowledged = true;  // bulk goes to the last node, which says every 250 ms what came
     // Share of packets lost, at each receiver.
     double Loss = 0.0;
     // From then on node 0 hears nothing of the other nodes.
@@ -38,6 +38,9 @@ struct AirScenario
     Time Settled = std::chrono::seconds(30);  // measured from then on
     Time Ends = std::chrono::seconds(90);
     std::uint64_t Seed = 1;
+
+    // Of a beat or an acknowledgement, which carry a report on each node.
+    std::size_t ReportBytes() const { return 90 + 8 * Nodes; }
 };
 
 }  // namespace Rabit::Sim
