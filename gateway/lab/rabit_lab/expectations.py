@@ -208,7 +208,7 @@ class ExitCodes(Expectation):
         self.code = code
 
     def judge(self, flight):
-        told = [life for life in flight.lives if life.by in ("stop", "end")]
+        told = [life for life in flight.lives if life.by in ("stop", "end") and not flight.scenario.nodes[life.node].beside]
         wrong = [f"{life.node} ended with {life.code}" if life.code is not None else
                  f"{life.node} did not end within 10 s of SIGTERM" for life in told if life.code != self.code]
         return result(wrong, f"of {len(told)} processes")
@@ -328,7 +328,7 @@ def parse(text, line, reader, run):
                        reader.names(at or "*", line))
     if match := re.fullmatch(rf"(\S+) (says|reports) (.+?)(?: within {TIME})?(?: after {TIME})?", text):
         node, verb, words, within, after = match.groups()
-        return Says(text, line, reader.names(node, line), verb, words.strip('"'), optional(within, flights.FOREVER),
+        return Says(text, line, reader.processes(node, line), verb, words.strip('"'), optional(within, flights.FOREVER),
                     in_run(optional(after, 0.0), run))
     if match := re.fullmatch(rf"([^\s/]+)/(\S+) at (\S+): (.+?){WINDOW}", text):
         return measure(text, line, reader, run, match)

@@ -65,7 +65,7 @@ class Nodes:
         """A new life of a node that does not run."""
         if self.is_running(name):
             return
-        node = self._scenario.nodes[name]
+        node, place = self._scenario.nodes[name], self._scenario.place_of(name)
         number = len(self._flight.lives_of(name)) + 1
         life = flights.Life(name, number, self.now(), self._steps.get(name, 0))
         records = self.records(name, number)
@@ -73,18 +73,18 @@ class Nodes:
         if node.image:  # its user is seldom the lab's
             for folder in (records, self.disk(name)):
                 folder.chmod(0o777)
-        env = {"RABIT_NODE_RECORD": str(records), "RABIT_NODE_INTERFACE": ",".join(self._nets.addresses(name)),
+        env = {"RABIT_NODE_RECORD": str(records), "RABIT_NODE_INTERFACE": ",".join(self._nets.addresses(place)),
                "RABIT_LAB_DISK": str(self.disk(name)), **node.env}
         if name in self._stepped:
             self._write_clock(name)
             env.update({"LD_PRELOAD": self._tools.stepped_clock, "STEPPED_CLOCK": str(self._clock(name))})
         self._flight.lives.append(life)
         index = len(self._flight.lives) - 1
-        argv = [word.replace("{disk}", str(self.disk(name))).replace("{address}", self._nets.addresses(name)[0])
+        argv = [word.replace("{disk}", str(self.disk(name))).replace("{address}", self._nets.addresses(place)[0])
                 for word in node.command]
-        argv, env = self._nets.spaces.start(name, argv, env)
-        process = processes.Process(argv, env, on_line=lambda text: self._line(index, text), cwd=self._scenario.folder,
-                                    start_new_session=True)
+        argv, env = self._nets.spaces.start(place, argv, env)
+        process = processes.Process(argv, env, on_line=lambda text: self._line(index, text),
+                                    cwd=self.disk(name) if node.beside else self._scenario.folder, start_new_session=True)
         self._running[name] = (index, process)
 
     def records(self, name, number):

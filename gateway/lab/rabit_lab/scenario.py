@@ -8,7 +8,7 @@ import shlex
 import shutil
 import typing
 
-from rabit_lab import expectations, marked, units
+from rabit_lab import autopilots, expectations, marked, units
 from rabit_lab.marked import ScenarioError, nearest
 
 NODE_NAME = re.compile(r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$")
@@ -26,6 +26,7 @@ class Node:
     start: float  # seconds; none: an event starts it
     plain: bool  # no Rabit node: others do not see it, and it records nothing
     line: int
+    beside: str = ""  # the node in whose network it runs, as its autopilot does
 
 
 @dataclasses.dataclass
@@ -117,6 +118,10 @@ class Scenario:
         """The networks of that node."""
         return [network for network in self.networks.values() if node in network.members]
 
+    def place_of(self, name):
+        """The node whose network it is in: itself, but for programs beside a node."""
+        return self.nodes[name].beside or name
+
     def share_network(self, one, other):
         """True if they can hear each other on some network, as the scenario has it."""
         if self.nodes[one].plain or self.nodes[other].plain:
@@ -134,6 +139,7 @@ class Reader:
         self.folder = self.path.resolve().parent
         self.nodes = {}
         self.networks = {}
+        self._autopilots = {}  # name -> Node
 
     def fail(self, line, text):
         raise ScenarioError(f"{self.path}:{line}", text)
@@ -185,6 +191,14 @@ class Reader:
             found += [name for name in fits if name not in found]
         return found
 
+    def processes(self, value, line):
+        """The same; what fits no node may be a program beside one, as uav1.autopilot."""
+        found = []
+        for pattern in value if isinstance(value, list) else [value]:
+            beside = fnmatch.filter(self._autopilots, str(pattern))
+            found += beside if beside and not fnmatch.filter(self.nodes, str(pattern)) else self.names(pattern, line)
+        return list(dict.fromkeys(found))
+
     def network_of(self, section):
         name = section.get("network")
         if name is not None and name not in self.networks:
@@ -209,13 +223,13 @@ class Reader:
         if observe and "observer" in self.nodes:
             self.fail(top.line_of("observe"), "observe: with it no node can be called `observer`")
         expects = self._read_expectations(top, run, events)
-        return Scenario(self.path, self.folder, self.nodes, self.networks, run, events, expects, observe)
+        return Scenario(self.path, self.folder, {**self.nodes, **self._autopilots}, self.networks, run, events, expects, observe)
 
     def _read_nodes(self, section):
         for key, value in section.items():
             line = section.line_of(key)
             value = self.map(value, line, f"node {key}")
-            self.keys(value, ("count", "command", "image", "env", "start", "plain"), f"node {key}")
+            self.keys(value, ("count", "command", "image", "env", "start", "plain", "autopilot"), f"node {key}")
             count = self.get(value, "count", units.number, None)
             if ("*" in key) != (count is not None):
                 self.fail(line, f"node {key}: `*` in the name and `count` go together: uav*: {{count: 4, ...}}")
@@ -225,9 +239,10 @@ class Reader:
             for name in names:
                 if not NODE_NAME.match(name) or len(name) > 64:
                     self.fail(line, f"`{name}` is no name of a node")
-                if name in self.nodes:
+                if name in self.nodes or name in self._autopilots:
                     self.fail(line, f"two nodes are called `{name}`")
                 self.nodes[name] = self._read_node(name, value, line)
+                self._read_autopilot(self.nodes[name], value)
         if not 1 <= len(self.nodes) <= MOST_NODES:
             self.fail(section.line, f"a fleet has 1 to {MOST_NODES} nodes")
 
@@ -252,6 +267,32 @@ class Reader:
         start = None if value.get("start") == "never" else self.get(value, "start", units.length, 0.0)
         return Node(name, words, image, {key: str(env[key]).replace("{node}", name) for key in env}, start,
                     self.flag(value, "plain"), line)
+
+    def _read_autopilot(self, node, value):
+        """Adds its programs, which run beside the node from its first start to the end of the run."""
+        if "autopilot" not in value:
+            return
+        at, section = value.line_of("autopilot"), value["autopilot"]
+        section = section if isinstance(section, marked.Map) else {"kind": section}
+        if isinstance(section, marked.Map):
+            self.keys(section, ("kind", "over", "options"), "autopilot")
+        kind, over = section.get("kind"), section.get("over", autopilots.MAVLINK)
+        if kind not in autopilots.KINDS:
+            self.fail(at, f"autopilot: {' or '.join(autopilots.KINDS)}, not `{kind}`{nearest(kind, autopilots.KINDS)}")
+        if over not in (autopilots.MAVLINK, autopilots.DDS):
+            self.fail(at, f"autopilot: `over` is {autopilots.MAVLINK} or {autopilots.DDS}, not `{over}`")
+        if node.image:
+            self.fail(at, f"autopilot: node {node.name} has an image; start the autopilot in it")
+        options = [str(option) for option in self.list(section.get("options", marked.List()), at, "options")]
+        try:
+            programs = autopilots.programs(kind, over, [option.replace("{node}", node.name) for option in options])
+        except ValueError as error:
+            self.fail(at, f"node {node.name}, autopilot {kind}: {error}")
+        for word, argv, env in programs:
+            name = f"{node.name}.{word}"
+            if name in self.nodes:
+                self.fail(at, f"two nodes would be called `{name}`")
+            self._autopilots[name] = Node(name, argv, None, {**env, **node.env}, node.start or 0.0, True, node.line, node.name)
 
     def _read_networks(self, top):
         if "network" not in top:
@@ -363,7 +404,9 @@ class Reader:
         length = self.get(value, "for", units.length, None)
         argument, where = value[verb], value.line_of(verb)
         values = {}
-        if verb in ("kill", "stop", "start", "cut", "freeze", "deaf"):
+        if verb in ("kill", "stop", "start", "freeze"):
+            values["nodes"] = self.processes(argument, where)
+        elif verb in ("cut", "deaf"):
             values["nodes"] = self.names(argument, where)
         elif verb in ("clock", "disk"):
             argument = self.map(argument, where, verb)

@@ -89,6 +89,34 @@ class ScenarioTest(InFolder):
             with self.subTest(more):
                 self.refused(line, words, more)
 
+    def test_an_autopilot_runs_beside_its_node_and_no_pattern_of_nodes_means_it(self):
+        fleet = "nodes:\n  uav*: {count: 2, command: [sh], autopilot: {kind: px4-sih, over: dds, options: [\"{node}\"]}}\n"
+        with mock.patch("shutil.which", lambda program: f"/bin/{program}"):
+            read = self.read("network:\n  radio: {members: \"*\"}\nevents:\n  - {at: 1s, kill: \"*\"}\n"
+                             "  - {at: 2s, kill: [\"uav1.*\"]}\n  - {at: 3s, kill: [\"*.autopilot\"]}\n", fleet)
+        self.assertEqual(list(read.nodes), ["uav1", "uav2", "uav1.agent", "uav1.autopilot", "uav2.agent", "uav2.autopilot"])
+        pilot = read.nodes["uav2.autopilot"]
+        self.assertEqual((pilot.command[0], pilot.command[-1], pilot.beside, pilot.plain), ("/bin/px4", "uav2", "uav2", True))
+        self.assertEqual(read.networks["radio"].members, ["uav1", "uav2"])
+        self.assertEqual([event.values["nodes"] for event in read.events],
+                         [["uav1", "uav2"], ["uav1.agent", "uav1.autopilot"], ["uav1.autopilot", "uav2.autopilot"]])
+
+    def test_a_mistake_with_an_autopilot_is_named_with_its_line(self):
+        def which(program):
+            return None if program in ("px4", "MicroXRCEAgent") else "/bin/" + program
+        fleet = "nodes:\n  uav:\n    command: [sh]\n    autopilot: PILOT\n"
+        cases = [
+            (4, "node uav, autopilot px4-sih: no program `px4` in PATH; build PX4", "px4-sih", ""),
+            (4, "no program `MicroXRCEAgent` in PATH; install", "{kind: arducopter, over: dds}", ""),
+            (4, "px4-sih or arducopter, not `ardupilot`", "ardupilot", ""),
+            (4, "`over` is mavlink or dds, not `udp`", "{kind: arducopter, over: udp}", ""),
+            (4, "did you mean `options`", "{kind: arducopter, option: []}", ""),
+            (6, "there is no node `uav.autopilot`", "arducopter", "events:\n  - {at: 1s, cut: [uav.autopilot]}\n"),
+        ]
+        for line, words, pilot, more in cases:
+            with self.subTest(words), mock.patch("shutil.which", which):
+                self.refused(line, words, more, fleet.replace("PILOT", pilot))
+
     def test_a_program_that_is_not_there_is_named_before_anything_starts(self):
         self.refused(2, "no program `./build/uav`", fleet="nodes:\n  uav: {command: [./build/uav]}\n")
 
