@@ -140,6 +140,7 @@ class Reader:
         self.nodes = {}
         self.networks = {}
         self._autopilots = {}  # name -> Node
+        self._instances = {}  # kind of autopilot -> how many there are
 
     def fail(self, line, text):
         raise ScenarioError(f"{self.path}:{line}", text)
@@ -284,10 +285,15 @@ class Reader:
         if node.image:
             self.fail(at, f"autopilot: node {node.name} has an image; start the autopilot in it")
         options = [str(option) for option in self.list(section.get("options", marked.List()), at, "options")]
+        instance = self._instances.setdefault(kind, 0)
+        self._instances[kind] += 1
         try:
-            programs = autopilots.programs(kind, over, [option.replace("{node}", node.name) for option in options])
+            programs = autopilots.programs(kind, over, node.name, instance,
+                                           [option.replace("{node}", node.name) for option in options])
         except ValueError as error:
             self.fail(at, f"node {node.name}, autopilot {kind}: {error}")
+        port = str(autopilots.mavlink_port(kind, instance))
+        node.command = [word.replace("{mavlink}", port) for word in node.command]
         for word, argv, env in programs:
             name = f"{node.name}.{word}"
             if name in self.nodes:

@@ -17,7 +17,7 @@ SKIPPED, IMPOSSIBLE = 77, 3
 LIMIT_S = 300  # only keeps a broken run from hanging the test
 
 SCENARIO = """nodes:
-  uav1: {command: [UAV, --config, CONFIG, --node, uav1, --mavlink, "udp:14550"], autopilot: {kind: arducopter, options: [--named, "{node}"]}}
+  uav1: {command: [UAV, --config, CONFIG, --node, uav1, --mavlink, "udp:{mavlink}"], autopilot: {kind: arducopter, options: [--named, "{node}"]}}
   uav2: {command: [UAV, --config, CONFIG, --node, uav2, --px4, dds], autopilot: {kind: px4-sih, over: dds}}
   ground: {command: [UAV, --config, CONFIG, --node, ground]}
 run: 34s
@@ -88,6 +88,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="rbtpilot-") as name:
         folder = pathlib.Path(name)
         (folder / "bin").mkdir()
+        (folder / "etc").mkdir()
         for program, text in (("arducopter", ARDUCOPTER), ("px4", PX4), ("MicroXRCEAgent", AGENT.replace("SIMULATED_PX4", px4))):
             (folder / "bin" / program).write_text(text, encoding="utf-8")
             (folder / "bin" / program).chmod(0o755)

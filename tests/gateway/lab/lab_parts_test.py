@@ -90,23 +90,27 @@ class ScenarioTest(InFolder):
                 self.refused(line, words, more)
 
     def test_an_autopilot_runs_beside_its_node_and_no_pattern_of_nodes_means_it(self):
-        fleet = "nodes:\n  uav*: {count: 2, command: [sh], autopilot: {kind: px4-sih, over: dds, options: [\"{node}\"]}}\n"
-        with mock.patch("shutil.which", lambda program: f"/bin/{program}"):
+        fleet = "nodes:\n  uav*: {count: 2, command: [sh, \"{mavlink}\"], autopilot: {kind: px4-sih, over: dds, options: [\"{node}\"]}}\n"
+        (self.folder / "etc").mkdir()
+        with mock.patch("shutil.which", lambda program: f"{self.folder}/bin/{program}"):
             read = self.read("network:\n  radio: {members: \"*\"}\nevents:\n  - {at: 1s, kill: \"*\"}\n"
                              "  - {at: 2s, kill: [\"uav1.*\"]}\n  - {at: 3s, kill: [\"*.autopilot\"]}\n", fleet)
         self.assertEqual(list(read.nodes), ["uav1", "uav2", "uav1.agent", "uav1.autopilot", "uav2.agent", "uav2.autopilot"])
         pilot = read.nodes["uav2.autopilot"]
-        self.assertEqual((pilot.command[0], pilot.command[-1], pilot.beside, pilot.plain), ("/bin/px4", "uav2", "uav2", True))
+        self.assertEqual(pilot.command, [f"{self.folder}/bin/px4", "-d", "-i", "1", "-w", "{disk}", f"{self.folder}/etc", "uav2"])
+        self.assertEqual((pilot.beside, pilot.plain, pilot.env["PX4_UXRCE_DDS_NS"]), ("uav2", True, "uav2"))
+        self.assertEqual([read.nodes[name].command[1] for name in ("uav1", "uav2")], ["14540", "14541"])
         self.assertEqual(read.networks["radio"].members, ["uav1", "uav2"])
         self.assertEqual([event.values["nodes"] for event in read.events],
                          [["uav1", "uav2"], ["uav1.agent", "uav1.autopilot"], ["uav1.autopilot", "uav2.autopilot"]])
 
     def test_a_mistake_with_an_autopilot_is_named_with_its_line(self):
         def which(program):
-            return None if program in ("px4", "MicroXRCEAgent") else "/bin/" + program
+            return None if program in missing else "/bin/" + program
         fleet = "nodes:\n  uav:\n    command: [sh]\n    autopilot: PILOT\n"
         cases = [
             (4, "node uav, autopilot px4-sih: no program `px4` in PATH; build PX4", "px4-sih", ""),
+            (4, "no program `arducopter` in PATH; build ArduPilot", "arducopter", ""),
             (4, "no program `MicroXRCEAgent` in PATH; install", "{kind: arducopter, over: dds}", ""),
             (4, "px4-sih or arducopter, not `ardupilot`", "ardupilot", ""),
             (4, "`over` is mavlink or dds, not `udp`", "{kind: arducopter, over: udp}", ""),
@@ -114,8 +118,12 @@ class ScenarioTest(InFolder):
             (6, "there is no node `uav.autopilot`", "arducopter", "events:\n  - {at: 1s, cut: [uav.autopilot]}\n"),
         ]
         for line, words, pilot, more in cases:
+            missing = ("px4", "MicroXRCEAgent", "arducopter" if "ArduPilot" in words else "")
             with self.subTest(words), mock.patch("shutil.which", which):
                 self.refused(line, words, more, fleet.replace("PILOT", pilot))
+        (self.folder / "bin").mkdir()
+        with mock.patch("shutil.which", lambda program: f"{self.folder}/bin/{program}"):
+            self.refused(4, "has no start scripts in", "", fleet.replace("PILOT", "px4-sih"))
 
     def test_a_program_that_is_not_there_is_named_before_anything_starts(self):
         self.refused(2, "no program `./build/uav`", fleet="nodes:\n  uav: {command: [./build/uav]}\n")

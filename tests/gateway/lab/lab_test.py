@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""Whole runs of the lab: each fault is seen to come and to go, and a scenario that must fail fails, with the reason. One of the
-flights is flown again over the same radio in simulated time, and the ages are compared.
+"""Whole runs of the lab: each fault is seen to come and to go, and a scenario that must fail fails, with the reason.
 
 Usage: lab_test.py RABIT UAV
 Exit code 77: this machine allows no namespaces or devices for them."""
@@ -163,10 +162,6 @@ run: 30s
 expect:
   - all up within 9s
 """
-# The same radio for `rabit lab replay`, after the nodes have met.
-SAME_RADIO = ["--radio", "125kbit/s", "--loss", "5%", "--delay", "20ms", "--after", "9s"]
-AS_EMULATED = 0.2  # largest difference of the ages, as a share of the recorded one,
-LATENESS_S = 0.1  # and in addition to it: the programs of the recorded flight ran on a machine that others use, too
 # A user without root, on a machine where users may open this device, as Debian has it.
 AS_USER = ["unshare", "--mount", "sh", "-c", "mount -t tmpfs none /dev/net && mknod -m 666 /dev/net/tun c 10 200 && exec setpriv "
            "--reuid=65534 --regid=65534 --clear-groups \"$@\"", "sh"]
@@ -196,11 +191,13 @@ class Case:
         self.code, self.said = done.returncode, done.stdout
 
     def repeat_if_disturbed(self):
-        """Once more, and alone, if it failed while the machine was too busy for it, as its notes say."""
-        if self.code == 1 and any(words in (self.results / "junit.xml").read_text(encoding="utf-8") for words in DISTURBED):
-            print(f"{self.folder.name}: once more, since the machine was late:\n{self.said}")
-            shutil.rmtree(self.results)
-            self.run()
+        """Once more, and alone, if the machine was too busy for it, as its notes say. Returns true if it ran again."""
+        if not any(words in (self.results / "junit.xml").read_text(encoding="utf-8") for words in DISTURBED):
+            return False
+        print(f"{self.folder.name}: once more, since the machine was late:\n{self.said}")
+        shutil.rmtree(self.results)
+        self.run()
+        return True
 
     def verdicts(self):
         """{expectation: reason of its failure, or none}"""
@@ -243,27 +240,6 @@ def check_radio(case):
     nodes = json.loads((case.results / "radio.json").read_text(encoding="utf-8"))["radio"]["counters"]["nodes"]
     check(sum(node["collided"] for node in nodes.values()) > 0, case, "hidden stations did not collide")
     check(nodes["uav3"]["lost"] > nodes["uav2"]["lost"], case, "the link that loses more lost no more")
-
-
-def check_what_if(case, rabit):
-    """Ages of the recorded flight are about the same in simulated time, and exactly the same each time."""
-    folders = [case.folder / "replayed", case.folder / "again"]
-    for folder in folders:
-        done = subprocess.run([rabit, "lab", "replay", case.results / "flight.mcap", *SAME_RADIO, "--to", folder], text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=LIMIT_S, check=False)
-        check(done.returncode == 0, case, f"replay ended with {done.returncode}: {done.stdout}")
-    for name in ("report.html", "what_if.json"):
-        check(folders[0].joinpath(name).read_bytes() == folders[1].joinpath(name).read_bytes(), case, f"two {name} of one seed differ")
-    found = {row["message"]: row for row in json.loads((folders[0] / "what_if.json").read_text(encoding="utf-8"))["messages"]}
-    for message in ("Pose", "Health", "MissionState", "Findings"):
-        if message in found:
-            flown, simulated = found[message]["recorded_p90"], found[message]["p90"]
-            check(flown is not None, case, f"nobody recorded an arrival of {message}")
-            check(simulated is not None, case, f"no node was there for {message} in simulated time")
-            print(f"{message}: age p90 {flown:.3f} s over the emulated radio, {simulated:.3f} s in simulated time")
-            check(abs(simulated - flown) <= AS_EMULATED * flown + LATENESS_S, case, f"the ages of {message} differ")
-    check("Pose" in found, case, f"the replay has no Pose: {sorted(found)}")
-    print(f"ok: {case.folder.name}: flown again in simulated time")
 
 
 def check_impossible(case):
@@ -324,7 +300,8 @@ def main():
             print(f"skipped: {lan.said}")
             sys.exit(SKIPPED)
         for case in (lan, radio, user):
-            case.repeat_if_disturbed()
+            if case.code == 1:
+                case.repeat_if_disturbed()
         check_lan(lan)
         check_radio(radio)
         check_failed(failing, REASONS)
@@ -333,7 +310,6 @@ def main():
               "no step of a clock")
         check_failed(no_start, NO_START_REASONS)
         check_passed(user)
-        check_what_if(user, rabit)
         check_impossible(refused)
         for name, number in (("terminated", signal.SIGTERM), ("killed", signal.SIGKILL)):
             interrupted(Case(folder, name, LAN, 4, rabit, uav), number)
