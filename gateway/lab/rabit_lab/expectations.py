@@ -1,6 +1,7 @@
 """What a scenario expects, as lines of text: parsed before the run, judged after it."""
 
 import dataclasses
+import difflib
 import re
 
 from rabit_lab import flight as flights
@@ -338,7 +339,8 @@ def parse(text, line, reader, run):
             raise ValueError(f"there is no network `{network}`")
         return Channel(text, line, network, what, units.percent(share), in_run(optional(after, 0.0), run),
                        optional(before, run))
-    raise ValueError(f"`{text}` is no expectation; they are, for instance: " + "; ".join(FORMS))
+    near = difflib.get_close_matches(text, FORMS, 2, 0.45) or FORMS
+    raise ValueError(f"`{text}` is no expectation; they are, for instance: " + "; ".join(near))
 
 
 def measure(text, line, reader, run, match):

@@ -94,6 +94,8 @@ class Flight:
         self.logs = []  # (time, node, level, text): what nodes logged and recorded
         self.output = []  # (time, node, text)
         self.air = collections.defaultdict(list)  # node -> [(time, used, budget, capacity)]
+        self.published = collections.defaultdict(list)  # (life index, message) -> [(time, posts, those that a newer one replaced)]
+        self.outcomes = collections.defaultdict(collections.Counter)  # (node, other node, queue) -> {outcome: messages}
         self.radio = collections.defaultdict(list)  # network -> [(time, counters)]
         self.lateness = {}  # network -> the radio program's own lateness, at the end
         self.census = {}  # network -> kinds of frames, at the end
@@ -103,6 +105,10 @@ class Flight:
         self.pauses = []  # (from, to) in which the machine stood still
         self.notes = []  # of the lab about itself
         self.about = {}  # node -> {"domain": ..., "transport": ...}
+
+    def events(self):
+        """What was done to the fleet, by time."""
+        return sorted(self.faults, key=lambda fault: fault.began)
 
     def lives_of(self, node):
         return [life for life in self.lives if life.node == node]
@@ -166,6 +172,10 @@ class Flight:
             self.logs.append((time, life.node, fact["level"], str(fact["text"])))
         elif kind == "about":
             self.about[life.node] = {"domain": fact["domain"], "transport": fact["transport"]}
+        elif kind == "publication":
+            self.published[life_index, fact["message"]].append((time, fact["offered"], fact["replaced"]))
+        elif kind == "outcome":
+            self.outcomes[life.node, fact["node"], fact["queue"]][fact["outcome"]] += 1
         elif kind == "air":
             self.air[life.node].append((time, fact["used"], fact["budget"], fact["capacity"]))
 

@@ -11,6 +11,7 @@ STATES = {"UP": "#2f9e44", "STALE": "#f2a900", "LOST": "#d0342c", "": "#d5d9de"}
 INK, FAINT, GRID = "#1d2733", "#6b7683", "#e6e9ed"
 COLUMNS = 500  # points of a line
 MOST_LINES = 8
+SILENT_S = 2.5  # a node tells each second what it sends
 
 
 def escape(text):
@@ -61,10 +62,15 @@ class Picture:
                                   f'fill="#5b6b7b" opacity="0.09"><title>{escape(fault.text)}</title></rect>')
 
     def marks(self):
-        for fault in self.flight.faults:
+        """A line for each event, with its number in the list of events above, if there is room for it."""
+        free = -math.inf
+        for number, fault in enumerate(self.flight.events(), 1):
             x = self.x(fault.began)
             self.parts.append(f'<g><line x1="{x:.1f}" y1="{self.top - 4}" x2="{x:.1f}" y2="{self.bottom}" stroke="#5b6b7b" '
                               f'stroke-dasharray="3 3"/><title>{escape(f"{fault.began:g} s: {fault.text}")}</title></g>')
+            if x >= free:
+                self.text(x, self.top - 6, number, "middle", INK, 10)
+                free = x + 14
 
     def svg(self):
         self.marks()
@@ -199,8 +205,14 @@ def rates(flight):
 
 def sends(flight):
     """What each node sends, as it counts itself."""
-    series = {node: [(time, used / 1000) for time, used, *_ in points if 0 <= time <= flight.end]
-              for node, points in flight.air.items()}
+    series = {}
+    for node, points in flight.air.items():
+        line = series.setdefault(node, [])
+        for time, used, *_ in points:
+            if 0 <= time <= flight.end:
+                if line and time - line[-1][0] > SILENT_S:
+                    line.append((line[-1][0], None))  # the line breaks while it does not run
+                line.append((time, used / 1000))
     return lines("What each node sends, with all headers", flight, "kB/s", series) if series else ""
 
 

@@ -19,6 +19,7 @@ section { background: #fff; border-radius: 4px; padding: 12px 18px; margin: 10px
 table { border-collapse: collapse; width: 100%; } th { text-align: left; color: #5f6b78; font-weight: 500; }
 td, th { padding: 4px 12px 4px 0; vertical-align: top; border-bottom: 1px solid #e6e9ed; }
 .number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
+.narrow { width: auto; }
 .mark { font-weight: 700; white-space: nowrap; } .good .mark { color: #2f7d3b; } .bad .mark { color: #c22a22; }
 tr.bad td { background: #fdf1f0; }
 pre { margin: 0; font: 13px/1.45 ui-monospace, monospace; white-space: pre-wrap; }
@@ -26,6 +27,10 @@ svg { max-width: 100%; height: auto; display: block; margin: 6px 0 14px; }
 #log td { font: 13px/1.4 ui-monospace, monospace; padding: 1px 10px 1px 0; border: 0; white-space: pre-wrap; }
 #log tr[data-kind=lab] { background: #eef2f7; font-weight: 600; } #log tr[data-kind=problem] { color: #a3281f; }
 input, select { font: inherit; padding: 3px 8px; margin: 0 8px 8px 0; }
+@media (max-width: 800px) {
+  main { padding: 10px 8px 40px; } section { padding: 10px; } svg { width: 800px; max-width: none; }
+  td, th { overflow-wrap: anywhere; } #log td:nth-child(-n+3) { overflow-wrap: normal; }
+}
 """
 
 SCRIPT = """
@@ -58,16 +63,16 @@ def pictures(scenario, flight):
 def verdict_rows(scenario, verdicts):
     rows = ""
     for verdict in verdicts:
-        where = f"{escape(scenario.path.name)}:{verdict.line}" if verdict.line else ""
+        where = f' <span class="faint">{escape(scenario.path.name)}:{verdict.line}</span>' if verdict.line else ""
         rows += (f'<tr class="{"good" if verdict.good else "bad"}"><td class="mark">{"✓ met" if verdict.good else "✗ not met"}'
-                 f'</td><td>{escape(verdict.text)}</td><td>{escape(verdict.detail)}</td><td class="faint">{where}</td></tr>')
-    return f"<table><tr><th></th><th>expected</th><th>seen</th><th></th></tr>{rows}</table>"
+                 f'</td><td>{escape(verdict.text)}{where}</td><td>{escape(verdict.detail)}</td></tr>')
+    return f"<table><tr><th></th><th>expected</th><th>seen</th></tr>{rows}</table>"
 
 
 def event_rows(flight):
-    rows = "".join(f'<tr><td class="number">{fault.began:g} s</td><td>{escape(fault.text)}</td></tr>'
-                   for fault in sorted(flight.faults, key=lambda fault: fault.began))
-    return f"<table>{rows}</table>" if rows else "<p>none</p>"
+    rows = "".join(f'<tr><td class="number faint">{number}</td><td class="number">{fault.began:g} s</td><td>{escape(fault.text)}</td></tr>'
+                   for number, fault in enumerate(flight.events(), 1))
+    return f'<table class="narrow">{rows}</table>' if rows else "<p>none</p>"
 
 
 def census(scenario, flight):

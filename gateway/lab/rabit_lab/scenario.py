@@ -148,7 +148,8 @@ class Reader:
     def keys(self, section, known, what):
         for key in section:
             if key not in known:
-                self.fail(section.line_of(key), f"{what} has no `{key}`{nearest(key, known)}")
+                hint = nearest(key, known) or f"; it may have {', '.join(known)}"
+                self.fail(section.line_of(key), f"{what} has no `{key}`{hint}")
 
     def map(self, value, line, what):
         if not isinstance(value, marked.Map):

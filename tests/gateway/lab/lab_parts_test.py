@@ -79,7 +79,9 @@ class ScenarioTest(InFolder):
             (5, "step", "events:\n  - {at: 1s, clock: {node: uav1}}\n"),
             (5, "is no queue", "events:\n  - {at: 1s, send: uav1, type: A}\n"),
             (5, "delivered within 2s", "events:\n  - {at: 1s, send: uav1/Q, type: A, expect: quickly}\n"),
-            (5, "is no expectation", "expect:\n  - all up\n"),
+            (5, "is no expectation; they are, for instance: all up within 3s", "expect:\n  - all up\n"),
+            (5, "for instance: uav*/Pose at ground: age p90 < 0.5s, after 20s", "expect:\n  - \"Pose at ground: age p90 < 1s\"\n"),
+            (5, "network radio has no `mode`; it may have members, rate", "network:\n  radio: {mode: lora}\n"),
             (5, "there is no node `uav9`", "expect:\n  - uav9 up within 1s\n"),
             (5, "the run ends at 30 s", "expect:\n  - uav1 up within 1s after 30s\n"),
             (5, "age p90 < 0.5s", "expect:\n  - \"uav1/Pose at ground: speed > 3\"\n"),
@@ -282,6 +284,20 @@ class AgeTest(unittest.TestCase):
 
     def test_times_without_the_observer_are_left_out(self):
         self.assertEqual(flights.without([(2, 3), (5, 20)], 0, 10), [(0, 2), (3, 5)])
+
+
+class ReportTest(InFolder):
+    def test_the_lines_of_a_picture_have_the_numbers_of_the_events(self):
+        flight = Made(self.read()).flight
+        flight.faults += [flights.Fault(20.0, 20.0, "start", ["uav1"], "start uav1"),
+                          flights.Fault(10.0, 10.0, "kill", ["uav1"], "kill uav1")]
+        self.assertRegex(report.event_rows(flight), ">1</td>.*10 s.*kill uav1.*>2</td>.*20 s.*start uav1")
+        self.assertRegex(plots.states(flight), "kill uav1.*>1</text>.*start uav1.*>2</text>")
+
+    def test_the_line_of_what_a_node_sends_breaks_while_it_does_not_run(self):
+        flight = Made(self.read()).flight
+        flight.air["uav1"] = [(float(time), 1000, 0, 0) for time in (1, 2, 3, 20, 21)]
+        self.assertRegex(plots.sends(flight), "d=\"M[^M]*M[^M]*\"")
 
 
 class WhatIfTest(InFolder):
