@@ -1,5 +1,5 @@
-"""Makes the Debian packages from the build, installs them with what they depend on into a fresh Debian, and there builds
-the template and runs its test. Needs root and a mirror of Debian; takes minutes."""
+"""Makes the Debian packages from the build, installs them with what they depend on into a fresh Debian of this
+machine's release, and there builds the template and runs its test. Needs root and a mirror of Debian; takes minutes."""
 
 import os
 import pathlib
@@ -31,7 +31,7 @@ def main():
         folder = pathlib.Path(folder)
         root = folder / "root"
         packages = packages_test.make_packages(cmake, build, folder / "packages")
-        consumer.run("mmdebstrap", "--mode=root", "--variant=apt", f"--include={TOOLS}", "bookworm", root)
+        consumer.run("mmdebstrap", "--mode=root", "--variant=apt", f"--include={TOOLS}", consumer.harness.debian(), root)
         (root / "packages").mkdir()
         for package in packages.values():
             shutil.copy(package, root / "packages")

@@ -17,15 +17,22 @@ import field
 import harness
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-DEBIAN = "debian:bookworm"
+DEBIAN = f"debian:{harness.debian()}"  # the programs are built on this release
 START_S = 60  # only keeps a broken engine from hanging the test
 CONTROL_GROUPS = pathlib.Path("/sys/fs/cgroup")
 
 
 def packages(name):
-    """Those listed in docker/<name>, of alternatives the last one, which is Debian 12's."""
+    """Those listed in docker/<name>, of alternatives the one that this machine has: building needs them, too."""
     lines = (ROOT / "docker" / name).read_text().splitlines()
-    return [line.split("|")[-1].strip() for line in lines if line.strip() and not line.startswith("#")]
+    listed = [line.replace(" ", "").split("|") for line in lines if line.strip() and not line.startswith("#")]
+    return [next((package for package in packages if _installed(package)), packages[-1]) for packages in listed]
+
+
+def _installed(package):
+    done = subprocess.run(["dpkg-query", "-W", "-f=${db:Status-Status}", package], text=True, check=False,
+                          stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    return done.stdout == "installed"
 
 
 class Engine:
@@ -118,7 +125,7 @@ class Engine:
         name = f"rabit-base:{self.mark}"
         self._images.append(name)
         make = ["unshare", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc", "mmdebstrap", "--quiet", "--variant=essential",
-                "--include=" + ",".join(packages("packages-runtime.txt")), "bookworm", "-"]
+                "--include=" + ",".join(packages("packages-runtime.txt")), harness.debian(), "-"]
         with subprocess.Popen(make, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                               env={**os.environ, "TMPDIR": str(self._folder)},
                               preexec_fn=harness.die_with_parent) as maker:

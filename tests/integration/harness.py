@@ -3,6 +3,7 @@ come, and a network of the test's own where the machine allows it."""
 
 import os
 import pathlib
+import platform
 import subprocess
 import sys
 import threading
@@ -22,6 +23,11 @@ def can_make_namespaces():
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False).returncode == 0
     except FileNotFoundError:
         return False
+
+
+def debian():
+    """The name of this machine's release of Debian: bookworm is 12, trixie 13. What is built here runs on that release."""
+    return platform.freedesktop_os_release().get("VERSION_CODENAME")
 
 
 def enter_namespace():

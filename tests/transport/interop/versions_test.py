@@ -8,7 +8,6 @@ uses a root that docker/bare.sh has kept. Ends with 77 where it cannot make one,
 
 import os
 import pathlib
-import platform
 import subprocess
 import sys
 import tempfile
@@ -30,7 +29,7 @@ INSIDE = 'mount --rbind /dev "$0/dev"; mount --bind "$1" "$0/tmp"; root=$0; shif
 
 def make_root(folder):
     """Returns the exit code of bare.sh."""
-    release = RELEASES.get(platform.freedesktop_os_release().get("VERSION_CODENAME"))
+    release = RELEASES.get(harness.debian())
     if release is None:
         print("skipped: needs Debian 12 or 13")
         return SKIPPED
