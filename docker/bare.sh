@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Runs the two commands of the README in a fresh Debian, in which only git is installed, and removes it again.
+# Runs the two commands of the README in a fresh Debian, in which only git is installed, and removes it again. The second
+# is ./tests/run.sh with all its tests; those that need a browser or containers are skipped there.
 #   docker/bare.sh [--ccache FOLDER] [--keep FOLDER] RELEASE [COMMAND]   RELEASE: bookworm (Debian 12) or trixie (Debian 13)
 # COMMAND is run in a copy of this tree, in place of the two. --ccache: the compiler's cache, for repeated runs; without it
 # all is compiled. --keep: the Debian is made in FOLDER/root, with the copy in /rabit, and stays. Needs root, mmdebstrap
@@ -11,7 +12,7 @@ tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cache=
 folder=
 usage() {
-    sed -n '2,7s/^# \?//p' "${BASH_SOURCE[0]}" >&2
+    sed -n '2,8s/^# \?//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 }
 while [ "${1:-}" = --ccache ] || [ "${1:-}" = --keep ]; do
@@ -22,7 +23,7 @@ while [ "${1:-}" = --ccache ] || [ "${1:-}" = --keep ]; do
 done
 [ $# -eq 1 ] || [ $# -eq 2 ] || usage
 release=$1
-command=${2:-./examples/demo.sh --seconds 80 && ./tests/run.sh --quick}
+command=${2:-./examples/demo.sh --seconds 80 && ./tests/run.sh}
 if [ "$(id -u)" -ne 0 ] || ! command -v mmdebstrap >/dev/null; then
     echo "bare.sh: skipped: needs root and mmdebstrap; docker/packages-docker.txt lists it" >&2
     exit 77
@@ -47,6 +48,7 @@ echo "bare.sh: $command" >&2
 unshare --mount --pid --fork --kill-child sh -ec '
     mount --rbind /dev "$0/dev"
     mount -t proc proc "$0/proc"
+    mount --rbind /sys "$0/sys"
     [ -z "$1" ] || mount --bind "$1" "$0/ccache"
     exec chroot "$0" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root CCACHE_DIR=/ccache \
         sh -c "cd /rabit && $2"' "$root" "$cache" "$command" </dev/null
