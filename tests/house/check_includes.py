@@ -135,7 +135,9 @@ ALLOWED = {
     # The lab: its radio carries any program's frames, and its reader of recordings knows no network.
     "gateway/lab/radio": {"CLI11", "network"},
     "gateway/lab/facts": {"core", "idl", "idl dynamic", "gateway messages", "room mcap", "CLI11"},
-    "gateway/lab/replay": {"core", "base", "idl", "idl dynamic", "gateway", "testing", "room names", "room mcap", "room replay", "CLI11"},
+    # A recorded node is one of a simulated fleet, or a real one, which records itself.
+    "gateway/lab/replay": {"core", "base", "factory", "idl", "idl dynamic", "gateway", "recording", "testing", "room names", "room mcap",
+                           "room replay", "CLI11"},
     "docs/generate": {"room configuration"},
     "examples": {"backfill", "core", "idl", "factory", "gateway", "node", "recording", "gateway messages", "user messages", "CLI11",
                  "network", "yaml-cpp"},

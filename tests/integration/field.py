@@ -4,11 +4,13 @@ Every name carries the process id of its maker. All is removed when the `with` b
 SIGTERM; what a SIGKILL of the maker leaves (empty namespaces, for the nodes die with their maker) is removed by the
 next Field."""
 
+import contextlib
 import os
 import re
 import shutil
 import signal
 import subprocess
+import sys
 import tempfile
 
 import harness
@@ -16,6 +18,17 @@ from rabit_lab.radio import Unsupported
 
 PREFIX = "rbtfield"
 NAME = re.compile(PREFIX + r"-(\d+)-")
+SKIPPED = 77  # the exit code of a test that this machine does not allow
+
+
+@contextlib.contextmanager
+def skipping():
+    """Ends the program with SKIPPED, and the reason, if the machine does not allow what is needed."""
+    try:
+        yield
+    except Unsupported as reason:
+        print(f"skipped: {reason}")
+        sys.exit(SKIPPED)
 
 
 def run(*argv, text=None):

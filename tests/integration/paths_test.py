@@ -127,8 +127,5 @@ def main():
 
 
 if __name__ == "__main__":
-    try:
+    with field.skipping():
         main()
-    except field.Unsupported as error:
-        print(f"skipped: {error}")
-        sys.exit(77)

@@ -221,7 +221,7 @@ def silence(ground):
 
 
 def main():
-    try:
+    with field.skipping():
         with radio_field.RadioField(os.path.abspath(sys.argv[1]), NODES) as ground:
             silence(ground)
             sockets = {node: socket_of(ground, node) for node in NODES}
@@ -236,9 +236,6 @@ def main():
                 print(f"ok: {part.__name__}")
             print(f"lateness of the program: {ground.lateness()}")
             assert ground.overrun() == 0, "the program was too slow for this machine"
-    except field.Unsupported as reason:
-        print(f"skipped: {reason}")
-        sys.exit(77)
 
 
 if __name__ == "__main__":

@@ -14,6 +14,12 @@ def _quantity(value, scales, example):
     return float(match.group(1)) * scales[match.group(2)]
 
 
+def _within(holds, result, value, rule):
+    if not holds:
+        raise ValueError(f"`{value}`: {rule}")
+    return result
+
+
 def seconds(value):
     """A time or a length of time; a bare number is seconds."""
     return _quantity(value, {"": 1, "s": 1, "ms": 0.001, "min": 60, "h": 3600}, "a time such as 10s, 20ms or 2min")
@@ -22,9 +28,7 @@ def seconds(value):
 def length(value):
     """A length of time, not negative."""
     result = seconds(value)
-    if result < 0:
-        raise ValueError(f"`{value}`: a length of time is not negative")
-    return result
+    return _within(result >= 0, result, value, "a length of time is not negative")
 
 
 def bits_per_second(value):
@@ -32,9 +36,7 @@ def bits_per_second(value):
     if value == "unlimited":
         return 0
     result = _quantity(value, {"bit/s": 1, "kbit/s": 1e3, "Mbit/s": 1e6, "Gbit/s": 1e9}, "a rate such as 250kbit/s")
-    if not 8 <= result <= 1e10:  # the programs count whole bytes
-        raise ValueError(f"`{value}`: a rate is from 8 bit/s to 10 Gbit/s")
-    return result
+    return _within(8 <= result <= 1e10, result, value, "a rate is from 8 bit/s to 10 Gbit/s")  # the programs count whole bytes
 
 
 def bytes_per_second(value):
@@ -42,26 +44,20 @@ def bytes_per_second(value):
     if value == "auto":
         return 0
     result = _quantity(value, {"B/s": 1, "kB/s": 1e3, "MB/s": 1e6}, "auto, or bytes a second such as 1500B/s or 5kB/s")
-    if result <= 0:
-        raise ValueError(f"`{value}`: a budget is more than 0")
-    return result
+    return _within(result > 0, result, value, "a budget is more than 0")
 
 
 def size(value):
     """Bytes."""
     result = _quantity(value, {"": 1, "B": 1, "kB": 1e3, "MB": 1e6, "KiB": 1024, "MiB": 1024 ** 2},
                        "a size such as 16kB")
-    if not 0 <= result <= 1e9:
-        raise ValueError(f"`{value}`: a size is from 0 to 1000MB")
-    return round(result)
+    return _within(0 <= result <= 1e9, round(result), value, "a size is from 0 to 1000MB")
 
 
 def percent(value):
     """A share, as percent."""
     result = _quantity(value, {"%": 1}, "a share such as 10%")
-    if not 0 <= result <= 100:
-        raise ValueError(f"`{value}`: a share is from 0% to 100%")
-    return result
+    return _within(0 <= result <= 100, result, value, "a share is from 0% to 100%")
 
 
 def number(value):
@@ -72,9 +68,7 @@ def number(value):
 def burst(value):
     """Losses in a row, on average."""
     result = number(value)
-    if result < 1:
-        raise ValueError(f"`{value}`: a burst is at least 1")
-    return result
+    return _within(result >= 1, result, value, "a burst is at least 1")
 
 
 def seed(value):
@@ -87,6 +81,4 @@ def seed(value):
 def metres(value):
     """A distance; a bare number is metres."""
     result = _quantity(value, {"": 1, "m": 1, "km": 1000}, "a distance such as 800m")
-    if result <= 0:
-        raise ValueError(f"`{value}`: a distance is more than 0")
-    return result
+    return _within(result > 0, result, value, "a distance is more than 0")

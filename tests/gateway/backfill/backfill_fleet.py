@@ -11,7 +11,6 @@ import field  # noqa: E402,F401
 import harness  # noqa: E402,F401
 
 MESSAGES = ["Sample", "Finding"]
-SKIPPED = 77
 # Only keeps a broken program from hanging.
 LIMIT = 120
 
