@@ -2,6 +2,7 @@
 
 #include <rabit/simulated/SimulatedTransport.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <memory>

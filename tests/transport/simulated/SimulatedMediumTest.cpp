@@ -1,6 +1,7 @@
 // Media that nodes of the simulated network share: rate, queues, turns, and the bytes that are sent.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <chrono>
 #include <sstream>
 
