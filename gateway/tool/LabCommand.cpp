@@ -100,10 +100,10 @@ void AddReplay(CLI::App &lab, Chosen &chosen)
     {
         std::vector<std::string> Files;
         std::map<std::string, std::string> Values;
+        bool RealTime = false;
     };
     const auto options = std::make_shared<Replayed>();
-    CLI::App *command =
-        lab.add_subcommand("replay", "Flies a recorded flight over another radio, in simulated time");
+    CLI::App *command = lab.add_subcommand("replay", "Flies a recorded flight over another radio");
     command->add_option("FILE", options->Files, "Recordings on one time line, as the flight.mcap of a run")
         ->required();
     for (const auto &[name, word, what] : RadioOptions)
@@ -112,6 +112,8 @@ void AddReplay(CLI::App &lab, Chosen &chosen)
     }
     command->add_option("--to", options->Values["--to"],
                         "Folder of the results, which is made (default: lab/NAME_TIME)");
+    command->add_flag("--real-time", options->RealTime,
+                      "Real gateways over an emulated radio, in real time: needs root or namespaces");
     command->callback(
         [options, &chosen]
         {
@@ -126,12 +128,17 @@ void AddReplay(CLI::App &lab, Chosen &chosen)
                         words.insert(words.end(), {name, value});
                     }
                 }
+                if (options->RealTime)
+                {
+                    words.emplace_back("--real-time");
+                }
                 return Become(std::move(words));
             };
         });
     AddExamples(*command, {"rabit lab replay lab/flight/flight.mcap --radio 57.6kbit/s",
                            "rabit lab replay flight.mcap --radio 250kbit/s --loss 10% --budget 5kB/s",
-                           "rabit lab replay flight.mcap --radio 1Mbit/s --after 10s --to results"});
+                           "rabit lab replay flight.mcap --radio 1Mbit/s --after 10s --to results",
+                           "rabit lab replay flight.mcap --radio 57.6kbit/s --real-time"});
 }
 
 }  // namespace

@@ -83,6 +83,19 @@ std::vector<FleetFacts::Json> FleetFacts::Look(const Gateway::Fleet &fleet)
                      {"used", fleet.air.used},
                      {"budget", fleet.air.budget},
                      {"capacity", fleet.air.capacity}});
+    for (const Gateway::PublicationStatus &status : fleet.publications)
+    {
+        const std::pair<std::uint64_t, std::uint64_t> counts(status.offered, status.replaced);
+        if (const auto [told, isNew] = _publications.try_emplace(status.message, counts);
+            isNew || told->second != counts)
+        {
+            told->second = counts;
+            facts.push_back({{"fact", "publication"},
+                             {"message", status.message},
+                             {"offered", status.offered},
+                             {"replaced", status.replaced}});
+        }
+    }
     return facts;
 }
 

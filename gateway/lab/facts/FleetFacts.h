@@ -7,6 +7,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "gateway.idl.h"
@@ -26,6 +28,7 @@ public:
     //   {"fact": "peer", "of": NODE, "state": "UP", "reason": TEXT, "incarnation": TEXT}
     //   {"fact": "problem", "subject": TEXT, "node": NODE, "reason": TEXT}, and the same with "solved"
     //   {"fact": "air", "used": B/s, "budget": B/s, "capacity": B/s}     with each message
+    //   {"fact": "publication", "message": NAME, "offered": COUNT, "replaced": COUNT}    since the beginning
     // Nothing if the bytes are no such message.
     std::vector<Json> Look(std::span<const std::uint8_t> sample);
     std::vector<Json> Look(const Gateway::Fleet &fleet);
@@ -41,6 +44,8 @@ private:
     std::optional<std::uint64_t> _incarnation;
     std::map<std::string, Peer> _peers;
     std::vector<Problem> _problems;  // in order
+    // By published message, what was told last: posts, and those that a newer one replaced.
+    std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> _publications;
 };
 
 }  // namespace Rabit::Facts

@@ -7,7 +7,7 @@ import secrets
 import shutil
 import sys
 
-from rabit_lab import cage, containers, network, new, runner, scenario as scenarios, table, tools, what_if
+from rabit_lab import cage, containers, network, new, real_time, runner, scenario as scenarios, table, tools, what_if
 from rabit_lab.marked import ScenarioError
 from rabit_lab.radio import Unsupported
 
@@ -83,6 +83,11 @@ def replay(options):
     folder = folder_for(f"{pathlib.Path(options.recording[0]).stem}_what_if", options.to)
     is_shown = False
     try:
+        if options.real_time:
+            scenario, told = real_time.read(found.replay, options.recording, radio, folder)
+            code = cage.run(lambda: replayed(real_time.fly(scenario, told, radio, folder, found), folder))
+            is_shown = code != IMPOSSIBLE
+            return code
         what_if.show(what_if.fly(found.replay, options.recording, radio), radio, folder)
         is_shown = True
     except KeyboardInterrupt:
@@ -91,8 +96,13 @@ def replay(options):
     finally:
         if not is_shown:
             shutil.rmtree(folder, ignore_errors=True)
-    print(f"\n{folder}/report.html")
-    return GOOD
+    return replayed(True, folder)
+
+
+def replayed(good, folder):
+    """The exit code. `good`: none if it was interrupted."""
+    print(f"\n{folder}/report.html" if good is not None else f"interrupted; {folder}/report.html has what was seen")
+    return INTERRUPTED if good is None else GOOD if good else FAILED
 
 
 def parse(arguments):
@@ -108,11 +118,12 @@ def parse(arguments):
     command.add_argument("folder", metavar="FOLDER")
     command.add_argument("--to", metavar="FILE", help="the file, which is made; default: FOLDER/scenario.yaml")
     command.set_defaults(act=make)
-    command = commands.add_parser("replay", help="fly a recorded flight over another radio, in simulated time")
+    command = commands.add_parser("replay", help="fly a recorded flight over another radio, in simulated time or in real time")
     command.add_argument("recording", metavar="FILE", nargs="+", help="recordings on one time line, as flight.mcap")
     for option in what_if.OPTIONS:
         command.add_argument(f"--{option.name}", metavar=option.word, help=option.text, default=option.default)
     command.add_argument("--to", metavar="FOLDER", help="folder of the results; default: lab/NAME_TIME")
+    command.add_argument("--real-time", action="store_true", help="fly real gateways over an emulated radio, in real time")
     command.set_defaults(act=replay)
     return parser.parse_args(arguments)
 

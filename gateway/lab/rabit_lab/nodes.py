@@ -1,5 +1,6 @@
 """The processes of the fleet: start, end, and their output on the lab's time line."""
 
+import functools
 import os
 import pathlib
 import signal
@@ -80,8 +81,8 @@ class Nodes:
             env.update({"LD_PRELOAD": self._tools.stepped_clock, "STEPPED_CLOCK": str(self._clock(name))})
         self._flight.lives.append(life)
         index = len(self._flight.lives) - 1
-        argv = [word.replace("{disk}", str(self.disk(name))).replace("{address}", self._nets.addresses(place)[0])
-                for word in node.command]
+        known = {"{disk}": str(self.disk(name)), "{address}": self._nets.addresses(place)[0], "{incarnation}": str(number)}
+        argv = [functools.reduce(lambda text, key: text.replace(key, known[key]), known, word) for word in node.command]
         argv, env = self._nets.spaces.start(place, argv, env)
         process = processes.Process(argv, env, on_line=lambda text: self._line(index, text),
                                     cwd=self.disk(name) if node.beside else self._scenario.folder, start_new_session=True)

@@ -6,6 +6,12 @@ import html
 from rabit_lab import plots, timeline
 
 MOST_LINES = 5000
+RUN_FILES = [
+    ("scenario.yaml", "what was flown"),
+    ("flight.mcap", "what every node recorded, on one time line; Foxglove and `rabit knew` open it"),
+    ("records/", "the recordings of each incarnation of each node"), ("observer/", "what one observer on the air heard"),
+    ("log.txt", "the log above"), ("logs/", "the output of each node"), ("radio.json", "the channels' counters"),
+    ("plots/", "the pictures above"), ("junit.xml", "the verdicts, for continuous integration")]
 
 STYLE = """
 :root { color-scheme: light; }
@@ -147,15 +153,11 @@ def write(scenario, flight, verdicts, interrupted, merged, folder):
     counted = f"{len(verdicts) - wrong} of {len(verdicts)} expectations met"
     now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
     notes = "".join(f"<p>{escape(note)}</p>" for note in flight.notes + ([f"no flight.mcap: {merged}"] if merged else []))
-    files = [("flight.mcap", "what every node recorded, on one time line; Foxglove and `rabit knew` open it"),
-             ("records/", "the recordings of each incarnation of each node"), ("observer/", "what one observer on the air heard"),
-             ("log.txt", "the log below"), ("logs/", "the output of each node"), ("radio.json", "the channels' counters"),
-             ("plots/", "the pictures above"), ("junit.xml", "the verdicts, for continuous integration")]
     write_page(folder / "report.html", f"{scenario.path.stem}: {word}", good,
                f"{counted if not interrupted else 'stopped by hand'} · {len(scenario.nodes)} nodes · {flight.end:.1f} s · {now}",
                [("Expectations", verdict_rows(scenario, verdicts) + notes), ("Events", event_rows(flight)),
-                ("Over time", '<p class="faint">Dashed lines are events, grey times faults that last; point at them for their '
-                              f"names.</p>{shown}"),
+                ("Over time", '<p class="faint">Dashed lines have the numbers of the events; grey times are faults that last. Point at '
+                              f"them for their names.</p>{shown}"),
                 ("Channels", census(scenario, flight)), ("Log", log_section(flight)),
                 ("Scenario", f"<pre>{escape((folder / 'scenario.yaml').read_text(encoding='utf-8'))}</pre>"),
-                ("Files", file_rows(folder, files))])
+                ("Files", file_rows(folder, RUN_FILES))])

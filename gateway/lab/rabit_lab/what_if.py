@@ -1,5 +1,5 @@
-"""A recorded flight over another radio, in simulated time: `rabit lab replay`. The program lab_replay flies it, and tells what
-each node sent and received. Equal recordings, options and seeds give equal files."""
+"""A recorded flight over another radio: `rabit lab replay`. The program lab_replay flies it in simulated time, and tells what
+each node sent and received. Equal recordings, options and seeds give equal files. real_time.py flies it in real time."""
 
 import collections
 import dataclasses
@@ -25,6 +25,8 @@ class Option:
 
 
 LONGEST_DELAY = 3600  # seconds
+NOT_FLOWN = ("Cuts, losses and freezes of the recorded flight are not repeated. Nodes end and begin when they did, and post what they "
+             "posted.")
 
 OPTIONS = [
     Option("radio", "RATE", "rate of the channel, which all share, as 57.6kbit/s; default: unlimited", units.bits_per_second, "unlimited"),
@@ -91,21 +93,24 @@ class Radio:
 
 @dataclasses.dataclass
 class Flown:
-    """A simulated flight, and the recorded one."""
+    """A simulated flight, or one in real time, and the recorded one."""
     simulated: flights.Flight
     recorded: flights.Flight  # only its values
-    published: dict  # (life index, message) -> [(time, posts that the gateway saw, those that never went out)]
     queues: list
     medium: list
 
 
 def fly(program, files, radio):
     """Runs lab_replay, and returns what it tells."""
-    done = subprocess.run([program, *files, *radio.argv()], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    return read(files[0], tell(program, files, radio.argv()), radio)
+
+
+def tell(program, files, options):
+    """The facts of lab_replay."""
+    done = subprocess.run([program, *files, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
         raise ScenarioError(files[0], done.stderr.strip().removeprefix(f"{files[0]}: ") or f"lab_replay ended with {done.returncode}")
-    facts = [json.loads(line) for line in done.stdout.splitlines()]
-    return read(files[0], facts, radio)
+    return [json.loads(line) for line in done.stdout.splitlines()]
 
 
 def read(name, facts, radio):
@@ -118,7 +123,8 @@ def read(name, facts, radio):
     made = scenarios.Scenario(pathlib.Path(name), pathlib.Path("."),
                               {node: scenarios.Node(node, [], "", {}, 0.0, False, 0) for node in nodes}, {"radio": channel},
                               end, [], [], None)
-    flown = Flown(flights.Flight(made), flights.Flight(made), collections.defaultdict(list), [], [])
+    flown = Flown(flights.Flight(made), flights.Flight(made), [], [])
+    flown.simulated.notes.append(NOT_FLOWN)
     indexes = {}
     for fact in facts:
         kind = fact["fact"]
@@ -130,8 +136,6 @@ def read(name, facts, radio):
             flown.medium.append(fact)
         elif kind == "queue":
             flown.queues.append(fact)
-        elif kind == "publication":
-            flown.published[indexes[fact["file"]], fact["message"]].append((fact["t"] / 1e9, fact["offered"], fact["replaced"]))
         elif kind == "flown":
             add_recorded(flown.recorded, fact)
         elif kind != "flight":
@@ -188,7 +192,7 @@ def left_out(flown, origin, message, after):
     """The share of the posts from that time on that never went out, since a newer one came first."""
     offered = replaced = 0
     for index, life in enumerate(flown.simulated.lives):
-        counts = flown.published.get((index, message), []) if life.node == origin else []
+        counts = flown.simulated.published.get((index, message), []) if life.node == origin else []
         before = [count for count in counts if count[0] <= after] or [(0, 0, 0)]
         if counts:
             offered += counts[-1][1] - before[-1][1]
@@ -266,6 +270,8 @@ def cells(one):
             seconds(one.p50), seconds(one.p90), seconds(one.worst), one.where, seconds(one.recorded_p90))
 
 
+FILES = [("what_if.json", "the figures, for programs"), ("plots/", "the pictures above"), *report.RUN_FILES[:-2]]
+
 QUEUE_HEADS = ("from", "queue", "sent", "refused", "delivered", "other outcomes", "delay p50", "p90", "worst")
 
 
@@ -335,7 +341,7 @@ def show(flown, radio, folder):
     nodes = [node_cells(flown, node, radio.after) for node in flight.scenario.nodes]
     queues = [queue_cells(fact) for fact in flown.queues]
     name = flight.scenario.path.stem
-    summary = f"{len(nodes)} nodes, {flight.end:.1f} s over {radio.text()}"
+    summary = f"{len(nodes)} nodes, {flight.end:.1f} s over {radio.text()}" + (", in real time" if flight.radio else "")
     print(f"{name}: {summary}\n{medium_text(flown, radio)}\n")
     print_table(HEADS, [cells(one) for one in messages])
     if queues:
@@ -356,7 +362,9 @@ def show(flown, radio, folder):
                  ("Over time", medium_pictures(flown, radio) + shown),
                  ("Streams", html_table(("stream", *HEADS[2:9], HEADS[10]), stream_rows)),
                  ("Log", report.log_section(flight)),
-                 ("Files", report.file_rows(folder, [("what_if.json", "the figures, for programs"), ("plots/", "the pictures above")]))]
+                 ("Files", report.file_rows(folder, FILES))]
+    if flight.radio:
+        sections.insert(-2, ("Channels", report.census(flight.scenario, flight)))
     report.write_page(folder / "report.html", f"{name}: what if", True, summary, sections)
 
 

@@ -24,6 +24,8 @@ constexpr const char *FleetType = "Rabit::Gateway::Fleet";
 // last.
 constexpr Time BeforeFirst = 6'000'000'000;
 constexpr Time AfterLast = 2'000'000'000;
+// Nodes that end this shortly before the last one, in nanoseconds, were told to end with it.
+constexpr Time EndsTogether = 2'000'000'000;
 
 bool IsKnown(const std::string &type)
 {
@@ -252,6 +254,22 @@ void Recording::AddLife(RecordedLife life)
         }
     }
     _lives.push_back(std::move(life));
+}
+
+Time Recording::Begin() const
+{
+    return _messages->First();
+}
+
+Time Recording::End() const
+{
+    const Time last = _messages->Last();
+    Time end = last;
+    for (const RecordedLife &life : _lives)
+    {
+        end = life.End + EndsTogether > last ? std::min(end, life.End) : end;
+    }
+    return std::max(Begin(), end);
 }
 
 double Recording::PairSeconds() const

@@ -55,6 +55,10 @@ public:
     // By their beginnings. A node that only others recorded has one life, from shortly before its first
     // message until shortly after its last.
     const std::vector<RecordedLife> &Lives() const { return _lives; }
+    // Of the flight: its first message, and its last one, or the first end of those nodes that ended together
+    // with the last one.
+    Time Begin() const;
+    Time End() const;
     // When messages of another node arrived, and when they were posted, as the recorder knew it.
     struct Arrival
     {

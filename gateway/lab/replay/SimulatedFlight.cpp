@@ -1,13 +1,12 @@
 #include "SimulatedFlight.h"
 
-#include <rabit/idl/MessageType.h>
-#include <rabit/idl/MessageTypeRegistry.h>
-
 #include <algorithm>
 #include <limits>
 #include <utility>
 
 #include "FleetFacts.h"
+#include "RecordedFacts.h"
+#include "RecordedPosts.h"
 
 namespace Rabit::WhatIf
 {
@@ -17,27 +16,8 @@ namespace
 using Json = SimulatedFlight::Json;
 using Replay::ReplayStream;
 
-// Nodes that end this shortly before the last one, in nanoseconds, were told to end with it.
-constexpr Time EndsTogether = 2'000'000'000;
-// A message that was older than this when it was posted, in nanoseconds, is posted as old as this. Clocks of
-// simulated nodes begin at a few of these.
-constexpr Time OldestPost = 900'000'000'000;
 // Of looking at counters.
 constexpr Nanoseconds LookPeriod = std::chrono::seconds(1);
-
-// Empties a queue, as a manager that is never late.
-class Taker final : public RabitManager
-{
-public:
-    using RabitManager::RabitManager;
-    void ExecuteUnitOfWork() final
-    {
-        std::shared_ptr<RabitMessage> message;
-        while (GetManagerMessageQueue()->GetMessage(message))
-        {
-        }
-    }
-};
 
 // Tells of each Gateway/Fleet of a node.
 class FleetWatch final : public RabitManager
@@ -82,17 +62,11 @@ Json ValuesFact(const std::string &node, const std::string &message, bool isOwn,
 // A life of a node in the simulation.
 struct SimulatedFlight::Flying
 {
-    struct Posted
-    {
-        std::shared_ptr<RabitMessage> Message;
-        const MessageType *Type = nullptr;
-        FlightTap::Values Values{};
-    };
     std::string Name;  // of the life
-    std::map<std::string, Posted> Posts{};
+    std::unique_ptr<RecordedPosts> Posts{};
+    std::map<std::string, FlightTap::Values> Own{};  // by message
     std::shared_ptr<FlightTap> Tap{};
     Facts::FleetFacts Facts{};
-    Nanoseconds NextPublications{0};
 };
 
 SimulatedFlight::SimulatedFlight(Recording &recording, const FlightSettings &settings, Tell tell)
@@ -100,29 +74,22 @@ SimulatedFlight::SimulatedFlight(Recording &recording, const FlightSettings &set
       _settings(settings),
       _tell(std::move(tell)),
       _times(recording.Plan().Streams.size()),
+      _begin(recording.Begin()),
+      _end(recording.End()),
       _fleet(settings.Seed),
       _lives(recording.Lives().size())
 {
     _fleet.Network.SetMedium("*", settings.Medium);
     _fleet.Network.SetFaults("*", "*", settings.Faults);
-    _begin = _recording.Messages().First();
-    const Time last = _recording.Messages().Last();
-    _end = last;
-    for (const RecordedLife &life : _recording.Lives())
-    {
-        _end = life.End + EndsTogether > last ? std::min(_end, life.End) : _end;
-    }
-    _end = std::max(_begin, _end);
 }
 
 SimulatedFlight::~SimulatedFlight() = default;
 
 void SimulatedFlight::Run()
 {
-    _tell({{"fact", "flight"}, {"end", Since(_end)}});
-    for (const std::string &note : _recording.Notes())
+    for (Json &fact : FactsOfFlight(_recording))
     {
-        _tell({{"fact", "note"}, {"text", note}});
+        _tell(std::move(fact));
     }
     const std::vector<RecordedLife> &lives = _recording.Lives();
     std::multimap<Time, std::size_t> ends;
@@ -166,7 +133,10 @@ void SimulatedFlight::Run()
         End(_there.begin()->second, false);
     }
     TellQueues();
-    TellFlown();
+    for (Json &fact : FactsOfArrivals(_recording))
+    {
+        _tell(std::move(fact));
+    }
 }
 
 void SimulatedFlight::RunTo(Time time)
@@ -194,7 +164,7 @@ void SimulatedFlight::Start(std::size_t life)
         config.Radio.Budget = *_settings.Budget > 0 ? _settings.Budget : std::nullopt;
     }
     auto flying = std::make_unique<Flying>();
-    flying->Name = recorded.Node + "#" + std::to_string(life);
+    flying->Name = NameOfLife(_recording, life);
     Flying *const added = flying.get();
     _lives[life] = std::move(flying);
     _there[recorded.Node] = life;
@@ -202,45 +172,21 @@ void SimulatedFlight::Start(std::size_t life)
     {
         added->Tap = std::make_shared<FlightTap>(configured.Node, node.Clock, node.Ahead, _book);
         configured.Tap = added->Tap;
-        for (const PublishRule &rule : configured.Publish)
-        {
-            const MessageType *type = MessageTypeRegistry::Find(rule.Type);
-            Flying::Posted posted{type->CreateShared(), type};
-            if (node.Workspace.AddPublishSubscribeMessage(rule.Message, posted.Message))
-            {
-                added->Posts.emplace(rule.Message, std::move(posted));
-            }
-        }
+        added->Posts = std::make_unique<RecordedPosts>(node.Workspace, configured);
         for (const AcceptRule &rule : configured.Accept)
         {
-            node.Reactor.AddManager(std::make_unique<Taker>(rule.Queue, node.Workspace));
+            node.Reactor.AddManager(std::make_unique<QueueTaker>(rule.Queue, node.Workspace));
         }
-        node.Reactor.AddManager(std::make_unique<FleetWatch>(
-            node.Workspace, FleetMessageNameOf(configured),
-            [this, added](const Gateway::Fleet &fleet)
-            {
-                for (Json &fact : added->Facts.Look(fleet))
-                {
-                    TellOf(*added, std::move(fact));
-                }
-                if (_fleet.Network.Now() >= added->NextPublications)
-                {
-                    added->NextPublications = _fleet.Network.Now() + LookPeriod;
-                    for (const Gateway::PublicationStatus &status : fleet.publications)
-                    {
-                        TellOf(*added, {{"fact", "publication"},
-                                        {"message", status.message},
-                                        {"offered", status.offered},
-                                        {"replaced", status.replaced}});
-                    }
-                }
-            }));
+        node.Reactor.AddManager(std::make_unique<FleetWatch>(node.Workspace, FleetMessageNameOf(configured),
+                                                             [this, added](const Gateway::Fleet &fleet)
+                                                             {
+                                                                 for (Json &fact : added->Facts.Look(fleet))
+                                                                 {
+                                                                     TellOf(*added, std::move(fact));
+                                                                 }
+                                                             }));
     };
-    _tell({{"fact", "life"},
-           {"file", added->Name},
-           {"node", recorded.Node},
-           {"t", _fleet.Network.Now().count()},
-           {"ended", recorded.End < _end ? Json(Since(recorded.End)) : Json()}});
+    _tell(FactOfLife(_recording, life));
     constexpr double gpsAtBeginning = 1.4e9;
     _fleet.Add(config, gpsAtBeginning + std::chrono::duration<double>(_fleet.Network.Now()).count(), "",
                prepare);
@@ -255,12 +201,9 @@ void SimulatedFlight::End(std::size_t life, bool isCrash)
         return;
     }
     _there.erase(node);
-    for (const auto &[message, posted] : flying->Posts)
+    for (const auto &[message, values] : flying->Own)
     {
-        if (!posted.Values.empty())
-        {
-            TellOf(*flying, ValuesFact(node, message, true, posted.Values));
-        }
+        TellOf(*flying, ValuesFact(node, message, true, values));
     }
     for (const auto &[stream, values] : flying->Tap->Arrived())
     {
@@ -284,35 +227,15 @@ void SimulatedFlight::Play(const Replay::ReplayItem &item)
 {
     const ReplayStream &stream = _recording.Plan().Streams[item.Stream];
     const auto there = _there.find(stream.Node);
-    const MessageType *type = MessageTypeRegistry::Find(stream.Type);
-    if (there == _there.end() || type == nullptr || stream.What == ReplayStream::Kind::Fleet)
+    if (there == _there.end())
     {
-        return;
-    }
-    SimulatedNode &node = _fleet[stream.Node];
-    if (stream.What == ReplayStream::Kind::Queue)
-    {
-        const std::shared_ptr<RabitMessage> message = type->CreateShared();
-        if (type->Deserialize(item.Data, *message))
-        {
-            node.Workspace.AddMessageToQueue(stream.Peer + "/" + stream.Name, message);
-        }
         return;
     }
     Flying &flying = *_lives[there->second];
-    const auto posted = flying.Posts.find(stream.Name);
-    if (posted == flying.Posts.end() || posted->second.Type != type ||
-        !type->Deserialize(item.Data, *posted->second.Message))
+    if (const auto posted = flying.Posts->Play(item, stream, _times))
     {
-        return;
+        flying.Own[stream.Name].emplace_back(_fleet.Network.Now(), *posted - _fleet[stream.Node].Ahead);
     }
-    const Nanoseconds age(static_cast<std::int64_t>(
-        std::min(item.LogTime - std::min(item.LogTime, item.PublishTime), OldestPost)));
-    const PostTime now = node.Clock->Now();
-    const Nanoseconds at = _times.Of(item.Stream, now.Monotonic, age);
-    posted->second.Message->PostMessage(
-        {now.GpsTimeSeconds - std::chrono::duration<double>(now.Monotonic - at).count(), at});
-    posted->second.Values.emplace_back(_fleet.Network.Now(), at - node.Ahead);
 }
 
 void SimulatedFlight::TellOf(const Flying &flying, Json fact)
@@ -351,29 +274,6 @@ void SimulatedFlight::TellQueues()
                {"refused", entry.Refused},
                {"outcomes", entry.Outcomes},
                {"ages", ages}});
-    }
-}
-
-void SimulatedFlight::TellFlown()
-{
-    for (const auto &[observer, streams] : _recording.Arrivals())
-    {
-        for (const auto &[stream, arrivals] : streams)
-        {
-            Json at = Json::array();
-            Json posted = Json::array();
-            for (const Recording::Arrival &arrival : arrivals)
-            {
-                at.push_back(Since(arrival.At));
-                posted.push_back(Since(arrival.Posted));
-            }
-            _tell({{"fact", "flown"},
-                   {"at", observer},
-                   {"node", stream.first},
-                   {"message", stream.second},
-                   {"arrived", at},
-                   {"posted", posted}});
-        }
     }
 }
 

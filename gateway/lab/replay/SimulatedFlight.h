@@ -40,19 +40,12 @@ public:
     SimulatedFlight(Recording &recording, const FlightSettings &settings, Tell tell);
     ~SimulatedFlight();
 
-    // Flies it to its end. Tells the facts of lab_facts (../facts/FlightFile.h), and those below; "t" and all
-    // other times are nanoseconds since the beginning, "file" names a life.
-    //   {"fact": "flight", "end": NS}                                      first
-    //   {"fact": "life", "file": NAME, "node": NODE, "t": NS, "ended": NS or null}
+    // Flies it to its end. Tells the facts of lab_facts (../facts/FlightFile.h), those of the recording
+    // (RecordedFacts.h), and those below; "t" and all other times are nanoseconds since the beginning.
     //   {"fact": "values", ...}                        once for each message of a life, also of its own
-    //   {"fact": "publication", "file": NAME, "t": NS, "message": NAME, "offered": COUNT, "replaced": COUNT}
-    //                                                  once a second, since the beginning of the life
     //   {"fact": "queue", "from": NODE, "to": NODE, "queue": NAME, "sent": COUNT, "refused": COUNT,
     //    "outcomes": {OUTCOME: COUNT}, "ages": [NS...]}
     //   {"fact": "medium", "t": NS, "bytes": COUNT, "carried": COUNT, "dropped": COUNT, "longest_wait": NS}
-    //   {"fact": "flown", "at": NODE, "node": NODE, "message": NAME, "arrived": [NS...], "posted": [NS...]}
-    //                                                  what the recorded nodes received
-    //   {"fact": "note", "text": TEXT}
     // Throws ConfigError.
     void Run();
 
@@ -66,7 +59,6 @@ private:
     void TellOf(const Flying &flying, Json fact);
     void TellMedium();
     void TellQueues();
-    void TellFlown();
     std::int64_t Since(Time time) const { return static_cast<std::int64_t>(time - _begin); }
 
     Recording &_recording;
@@ -74,8 +66,8 @@ private:
     const Tell _tell;
     const std::shared_ptr<QueueBook> _book = std::make_shared<QueueBook>();
     Replay::PostTimes _times;
-    Time _begin = 0;
-    Time _end = 0;
+    const Time _begin;
+    const Time _end;
     Nanoseconds _nextMedium{0};
     SimulatedFleet _fleet;
     std::vector<std::unique_ptr<Flying>> _lives;  // in the recording's order; null: it is not there

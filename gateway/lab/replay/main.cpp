@@ -1,5 +1,6 @@
 // lab_replay FILE...: flies recorded flights over a simulated radio, and writes what the nodes saw as JSON,
-// one object a line (SimulatedFlight.h).
+// one object a line (SimulatedFlight.h). With --about it only writes what was recorded (RecordedFacts.h);
+// with --node it is one node of the flight, in real time (RealLife.h).
 #include <rabit/RabitLog.h>
 
 #include <CLI/CLI.hpp>
@@ -9,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "RealLife.h"
+#include "RecordedFacts.h"
 #include "Recording.h"
 #include "SimulatedFlight.h"
 
@@ -18,6 +21,27 @@ namespace
 std::chrono::nanoseconds OfSeconds(double seconds)
 {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds));
+}
+
+void Write(const nlohmann::ordered_json &fact)
+{
+    std::cout << fact.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) << '\n';
+}
+
+void WriteAbout(const Rabit::WhatIf::Recording &recording)
+{
+    for (const auto &fact : FactsOfFlight(recording))
+    {
+        Write(fact);
+    }
+    for (std::size_t life = 0; life < recording.Lives().size(); ++life)
+    {
+        Write(FactOfLife(recording, life));
+    }
+    for (const auto &fact : FactsOfArrivals(recording))
+    {
+        Write(fact);
+    }
 }
 
 }  // namespace
@@ -43,6 +67,15 @@ int main(int argc, char **argv)
     CLI::Option *limit =
         app.add_option("--budget", budget, "Bytes a second of each node; 0: as the channel allows");
     app.add_option("--seed", settings.Seed, "Start of the random numbers; equal seeds give equal flights");
+    Rabit::WhatIf::RealLifeSettings real;
+    bool isAbout = false;
+    app.add_flag("--about", isAbout, "Only write what was recorded");
+    app.add_option("--node", real.Node, "Be this node of the flight, in real time, until SIGTERM");
+    app.add_option("--life", real.Life, "Which life of the node, from 1");
+    app.add_option("--interface", real.Interfaces, "Network interfaces of the node")
+        ->delimiter(',')
+        ->envname("RABIT_NODE_INTERFACE");
+    app.add_option("--record", real.Record, "Folder to record the node into")->envname("RABIT_NODE_RECORD");
     CLI11_PARSE(app, argc, argv);
     settings.Medium.BytesPerSecond = static_cast<std::uint64_t>(rate);
     settings.Faults.Loss = percent / 100;
@@ -50,17 +83,25 @@ int main(int argc, char **argv)
     settings.Faults.Jitter = OfSeconds(jitter);
     if (!limit->empty())
     {
-        settings.Budget = budget;
+        real.Budget = settings.Budget = budget;
     }
-    Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Off);
     try
     {
         Rabit::WhatIf::Recording recording(files);
-        Rabit::WhatIf::SimulatedFlight flight(
-            recording, settings,
-            [](const nlohmann::ordered_json &fact)
-            { std::cout << fact.dump(-1, ' ', true, nlohmann::json::error_handler_t::replace) << '\n'; });
-        flight.Run();
+        if (!real.Node.empty())
+        {
+            FlyLife(recording, real);
+            return 0;
+        }
+        Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Off);
+        if (isAbout)
+        {
+            WriteAbout(recording);
+        }
+        else
+        {
+            Rabit::WhatIf::SimulatedFlight(recording, settings, Write).Run();
+        }
     }
     catch (const std::exception &error)
     {

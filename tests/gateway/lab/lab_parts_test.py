@@ -13,10 +13,12 @@ import unittest
 from unittest import mock
 from xml.etree import ElementTree
 
+import yaml
+
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "gateway" / "lab"))
 # pylint: disable=wrong-import-position
 from rabit_lab import flight as flights  # noqa: E402
-from rabit_lab import junit, main, new, places, plots, report, scenario, tools, units, what_if  # noqa: E402
+from rabit_lab import junit, main, new, places, plots, real_time, report, scenario, tools, units, what_if  # noqa: E402
 from rabit_lab.marked import ScenarioError  # noqa: E402
 
 FLEET = """nodes:
@@ -284,6 +286,43 @@ class AgeTest(unittest.TestCase):
 
     def test_times_without_the_observer_are_left_out(self):
         self.assertEqual(flights.without([(2, 3), (5, 20)], 0, 10), [(0, 2), (3, 5)])
+
+
+class RealTimeTest(InFolder):
+    """uav flies from 1 s on, ends at 4 s, and begins anew at 6 s; ground is there all the time, for 10 s."""
+
+    RADIO = what_if.Radio(57600, 12.5, 4, 0.05, 0.02, 8000, 10, 1500.0, 2.0, 7)
+
+    def told(self):
+        lives = [("ground", 0, None), ("uav", 1e9, 4e9), ("uav", 6e9, None)]
+        return what_if.read("flight.mcap", [{"fact": "flight", "end": 10e9}]
+                            + [{"fact": "life", "file": str(n), "node": node, "t": t, "ended": ended}
+                               for n, (node, t, ended) in enumerate(lives)], self.RADIO)
+
+    def test_a_recorded_flight_is_a_scenario_with_its_nodes_and_its_radio(self):
+        path = self.folder / "s.yaml"
+        path.write_text(yaml.safe_dump(real_time.scenario_of("sh", ["flight.mcap"], self.told(), self.RADIO)), encoding="utf-8")
+        read = scenario.read(path)
+        self.assertEqual(read.run, 10)
+        self.assertEqual([(event.at, event.verb, event.values["nodes"]) for event in read.events],
+                         [(4, "kill", ["uav"]), (6, "start", ["uav"])])
+        self.assertEqual((read.nodes["ground"].start, read.nodes["uav"].start), (0, 1))
+        self.assertEqual(read.nodes["uav"].command[1:],
+                         [str(pathlib.Path("flight.mcap").resolve()), "--node", "uav", "--life", "{incarnation}", "--budget", "1500.0"])
+        radio = read.networks["radio"]
+        self.assertEqual((radio.rate, radio.loss, radio.burst, radio.delay, radio.jitter, radio.queue, radio.overhead, radio.seed),
+                         (57600, 12.5, 4, 0.05, 0.02, 8000, 10, 7))
+
+    def test_a_replay_says_what_it_does_not_repeat(self):
+        self.assertIn("Cuts, losses and freezes of the recorded flight are not repeated", self.told().simulated.notes[0])
+
+    def test_outcomes_of_queue_messages_are_counted_by_their_queue(self):
+        flight = Made(self.read()).flight
+        for outcome in ("delivered", "delivered", "expired", "refused"):
+            flight.take({"fact": "outcome", "t": 1e9, "node": "uav1", "queue": "Orders", "outcome": outcome, "reason": ""},
+                        next(n for n, life in enumerate(flight.lives) if life.node == "ground"), lambda time: time / 1e9)
+        self.assertEqual(what_if.queue_cells(real_time.queues(flight)[0]),
+                         ("ground", "uav1/Orders", 3, 1, 2, "1 expired", "-", "-", "-"))
 
 
 class ReportTest(InFolder):

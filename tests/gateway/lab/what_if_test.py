@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Flights over three emulated radios are flown again in simulated time over the same radio: p90 of the ages of each message is
-about the same, and two replays are exactly the same.
+"""Flights over three emulated radios are flown again over the same radio, in simulated time, and one of them in real time: p90 of
+the ages of each message is about the same, and two replays in simulated time are exactly the same.
 
 Usage: what_if_test.py RABIT UAV GROUND
 Exit code 77: this machine allows no namespaces or devices for them."""
@@ -29,6 +29,7 @@ network:
 run: 60s
 """
 AFTER = "15s"  # the nodes have met
+IN_REAL_TIME = "lossy"
 MESSAGES = ("Pose", "Health", "MissionState", "Findings")
 AS_EMULATED = 0.2  # largest difference of the ages, as a share of the recorded one,
 LATENESS_S = 0.05  # and in addition to it: the programs of the recorded flight ran on a machine that others use, too
@@ -40,23 +41,33 @@ def replay(case, rabit, options, folder):
     check(done.returncode == 0, case, f"replay ended with {done.returncode}: {done.stdout}")
 
 
-def differences(case, rabit, options):
-    """The messages whose ages differ."""
+def differences(case, folder, how):
+    """The messages whose ages differ in a replay."""
+    found = {row["message"]: row for row in json.loads((folder / "what_if.json").read_text(encoding="utf-8"))["messages"]}
+    wrong = []
+    for message in MESSAGES:
+        check(message in found, case, f"the replay has no {message}: {sorted(found)}")
+        flown, again = found[message]["recorded_p90"], found[message]["p90"]
+        check(flown is not None and again is not None, case, f"no arrival of {message}: {flown}, {again}")
+        print(f"{case.folder.name} {message}: age p90 {flown:.3f} s over the emulated radio, {again:.3f} s in {how} time")
+        if abs(again - flown) > AS_EMULATED * flown + LATENESS_S:
+            wrong.append(f"{message} in {how} time")
+    return wrong
+
+
+def compare(case, rabit, options):
+    """The same of a flight."""
     check(case.code == 0, case, f"ended with {case.code}, not 0")
     folders = [case.results / "replayed", case.results / "again"]
     for folder in folders:
         replay(case, rabit, options, folder)
     for name in ("report.html", "what_if.json"):
         check(folders[0].joinpath(name).read_bytes() == folders[1].joinpath(name).read_bytes(), case, f"two {name} of one seed differ")
-    found = {row["message"]: row for row in json.loads((folders[0] / "what_if.json").read_text(encoding="utf-8"))["messages"]}
-    wrong = []
-    for message in MESSAGES:
-        check(message in found, case, f"the replay has no {message}: {sorted(found)}")
-        flown, simulated = found[message]["recorded_p90"], found[message]["p90"]
-        check(flown is not None and simulated is not None, case, f"no arrival of {message}: {flown}, {simulated}")
-        print(f"{case.folder.name} {message}: age p90 {flown:.3f} s over the emulated radio, {simulated:.3f} s in simulated time")
-        if abs(simulated - flown) > AS_EMULATED * flown + LATENESS_S:
-            wrong.append(message)
+    wrong = differences(case, folders[0], "simulated")
+    if case.folder.name == IN_REAL_TIME:
+        replay(case, rabit, [*options, "--real-time"], case.results / "real")
+        check((case.results / "real" / "flight.mcap").exists(), case, "no recording of the flight in real time")
+        wrong += differences(case, case.results / "real", "real")
     return wrong
 
 
@@ -73,9 +84,9 @@ def main():
             if case.code == lab_test.IMPOSSIBLE:
                 print(f"skipped: {case.said}")
                 sys.exit(lab_test.SKIPPED)
-            wrong = differences(case, rabit, RADIOS[radio][1])
+            wrong = compare(case, rabit, RADIOS[radio][1])
             if wrong and case.repeat_if_disturbed():
-                wrong = differences(case, rabit, RADIOS[radio][1])
+                wrong = compare(case, rabit, RADIOS[radio][1])
             check(not wrong, case, f"the ages differ: {', '.join(wrong)}")
 
 
