@@ -64,6 +64,19 @@ TEST(FleetFactsTest, OnlyChangesAreTold)
     EXPECT_EQ(facts.Look(Encoded(FleetWith(Gateway::NodeState::LOST, 6)))[0]["incarnation"], "6");
 }
 
+TEST(FleetFactsTest, CountsOfAPublicationAreToldWhenTheyChange)
+{
+    FleetFacts facts;
+    Gateway::Fleet fleet = FleetWith(Gateway::NodeState::UP);
+    fleet.publications.emplace_back();
+    fleet.publications.back().message = "Pose";
+    fleet.publications.back().offered = 7;
+    EXPECT_EQ(facts.Look(Encoded(fleet)).back()["offered"], 7);
+    EXPECT_EQ(NamesOf(facts.Look(Encoded(fleet))), (std::vector<std::string>{"air"}));
+    fleet.publications.back().replaced = 2;
+    EXPECT_EQ(facts.Look(Encoded(fleet)).back()["replaced"], 2);
+}
+
 TEST(FleetFactsTest, AProblemIsToldWhenItComesAndWhenItIsSolved)
 {
     FleetFacts facts;
