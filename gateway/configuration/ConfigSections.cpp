@@ -64,7 +64,8 @@ ConfigSection WholeFileSection()
           "Limits for messages to queues of other nodes. Needed only to change the defaults."},
          {"foreign", "list of mappings", "",
           "[{subscribe: rt/chatter, type: std_msgs::msg::String, as: Chatter}]",
-          "Topics of programs that are no nodes: ROS 2, PX4, any DDS program."},
+          "Topics of programs that are no nodes: ROS 2, PX4, any DDS program. With `paths`, they are on the "
+          "first one."},
          {"foxglove", "list of mappings", "", "[{message: Pose, as: foxglove.Log, fields: {message: text}}]",
           "Sources of a viewer's map, pictures and log, for `rabit foxglove`. Nodes ignore it."},
          {"problems_of", "list of nodes; `*` and `?` are wildcards", "", "[\"uav*\"]",

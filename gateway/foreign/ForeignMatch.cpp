@@ -174,8 +174,9 @@ std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
     {
         return "no program " + does + where + beside;
     }
+    const std::string path = network.Path.empty() ? "" : ", those of path `" + network.Path + "`,";
     return "no program " + does + where + "; a program that listens on other interfaces than " +
-           ListedNames(network.Interfaces) + " cannot be reached";
+           ListedNames(network.Interfaces) + path + " cannot be reached";
 }
 
 }  // namespace Rabit::ForeignMatch

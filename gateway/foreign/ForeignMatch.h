@@ -35,6 +35,7 @@ struct Network
 {
     int Domain = 0;
     std::vector<std::string> Interfaces{};  // empty: all
+    std::string Path{};                     // of several, the one that foreign topics use
 };
 
 // Returns, by name, why no program's endpoint matches. Precondition: none does. `topics` are all topics on

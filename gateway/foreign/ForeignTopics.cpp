@@ -9,7 +9,9 @@ namespace Rabit
 
 void ForeignTopics::Open(TransportSession &session, RabitManager &manager, Duration now)
 {
-    const ForeignMatch::Network network{_config.Domain, _config.Interfaces};
+    const GatewayConfig path = PathConfigsOf(_config).front();
+    const ForeignMatch::Network network{_config.Domain, path.Interfaces,
+                                        path.Paths.empty() ? "" : path.Paths.front().Name};
     for (const ForeignRule &rule : _config.Foreign)
     {
         const MessageType &type = *MessageTypeRegistry::Find(rule.Type);

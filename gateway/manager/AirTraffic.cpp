@@ -244,8 +244,12 @@ std::size_t AirTraffic::BeatBytes(Duration now) const
 void AirTraffic::LookAt(std::size_t publisher, Duration now)
 {
     TopicPublisher &of = _publishers[publisher];
-    of.Fetch();
-    if (of.DueAt(now) <= now)
+    if (_mirrored != Mirrored::Nothing)
+    {
+        of.Fetch();
+    }
+    if (_mirrored != Mirrored::Nothing && of.DueAt(now) <= now &&
+        (_mirrored == Mirrored::All || MayCopy(of, now)))
     {
         _schedule.Ready(_publisherStreams[publisher], of.NextBytes(_cost));
     }
@@ -253,6 +257,15 @@ void AirTraffic::LookAt(std::size_t publisher, Duration now)
     {
         _schedule.NotReady(_publisherStreams[publisher]);
     }
+}
+
+// Of values that go by another path, too. Half of a budget stays free for copies of queue messages, which
+// have no turns. The next copy is due when there is room for it.
+bool AirTraffic::MayCopy(const TopicPublisher &publisher, Duration now)
+{
+    const auto kept = static_cast<std::size_t>(_config.Radio.Budget.value_or(0.0) / 2);
+    return ImportanceOf(publisher.Rule()) != TrafficClass::Bulk &&
+           _schedule.MaySend(publisher.NextBytes(_cost) + kept, now);
 }
 
 void AirTraffic::LookAtTypes(Duration now)
@@ -280,10 +293,12 @@ Duration AirTraffic::ServeLimited()
     const Duration linksDue = _links.Advance();
     const Duration now = Now();
     LookAtBeat(now);
-    const bool carries = _choice.CarriesAny(_path);
+    _mirrored = _choice.CarriesAny(_path)           ? Mirrored::All
+                : _choice.IsSecondOfAny(_path, now) ? Mirrored::Copies
+                                                    : Mirrored::Nothing;
     for (std::size_t i = 0; i < _publishers.size(); ++i)
     {
-        carries ? LookAt(i, now) : _schedule.NotReady(_publisherStreams[i]);
+        LookAt(i, now);
     }
     LookAtTypes(now);
     LookAtCards();
@@ -293,6 +308,7 @@ Duration AirTraffic::ServeLimited()
         Send(*chosen, now);
     }
     Duration next = std::min(_schedule.NextDue(now), linksDue > now ? linksDue : now + LookPeriod);
+    next = _mirrored == Mirrored::Copies ? std::min(next, now + LookPeriod) : next;
     next = _estimate.Rate(now) ? std::min(next, now + LimitPeriod) : next;
     for (const Duration beat : {_presence.BeatDue(), _presence.BeatPromised()})
     {
@@ -302,7 +318,7 @@ Duration AirTraffic::ServeLimited()
     next = types > now ? std::min(next, types) : next;
     for (const TopicPublisher &publisher : _publishers)
     {
-        const Duration due = carries ? publisher.DueAt(now) : now;
+        const Duration due = _mirrored != Mirrored::Nothing ? publisher.DueAt(now) : now;
         next = due > now ? std::min(next, due) : next;
     }
     _links.WillServe(next);

@@ -99,6 +99,7 @@ private:
     void KeepPromise(Duration now);
     void LookAtBeat(Duration now);
     void LookAt(std::size_t publisher, Duration now);
+    bool MayCopy(const TopicPublisher &publisher, Duration now);
     void LookAtTypes(Duration now);
     void LookAtCards();
     void Send(StreamId id, Duration now);
@@ -112,6 +113,14 @@ private:
     TypeExchange &_types;
     const PathChoice &_choice;
     const std::size_t _path;
+    // What goes by this path of States and telemetry.
+    enum class Mirrored
+    {
+        Nothing,
+        Copies,
+        All
+    };
+    Mirrored _mirrored = Mirrored::Nothing;
     const AirCost _cost;
     TransportSession *_session = nullptr;
     DiscoveryTurns *_turns = nullptr;  // of the session

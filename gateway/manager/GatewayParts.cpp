@@ -126,7 +126,7 @@ std::chrono::nanoseconds GatewayManager::Parts::Service()
     }
     if (_paths.size() > 1)
     {
-        next = std::min(next, _choice.Due().value_or(next));
+        next = std::min({next, _choice.Due().value_or(next), _nextLateLook});
         _links.WillServe(next);
     }
     if (change.State || change.Offers || _foreign.TakeChange())

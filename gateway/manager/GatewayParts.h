@@ -82,6 +82,7 @@ private:
     // An announcement that has come by one path need not come by the others.
     void ShareOffers(const PeerTable::Peer &peer, Presence &beats, Heard &change);
     void Forget(const std::string &node, std::size_t path, Duration now);
+    void LookForLateBeats(Duration now);
     void ChoosePaths(Heard &change, Duration now);
 
     // Compares the announcements with the subscriptions.
@@ -130,6 +131,7 @@ private:
     const SourceClock _source;
     Subscriptions _subscriptions;
     PathChoice _choice;
+    Duration _nextLateLook{0};
     ForeignTopics _foreign{_config, _source, Handlers()};
     std::shared_ptr<Gateway::Fleet> _fleet;
     LinkStrains _strains;

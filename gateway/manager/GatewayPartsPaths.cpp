@@ -7,6 +7,22 @@
 
 namespace Rabit
 {
+namespace
+{
+
+constexpr std::chrono::nanoseconds LateLookPeriod = std::chrono::milliseconds(50);
+
+// Longer than the air and a busy machine hold up a beat.
+constexpr std::chrono::nanoseconds HeldUp = std::chrono::milliseconds(250);
+
+// True if the newest beat was held up on the way, or none came when half the time to the one after it has
+// passed as well.
+bool IsLate(const PeerTable::Peer &peer, std::chrono::nanoseconds now)
+{
+    return now - peer.LastHeard > peer.Period * 3 / 2 || peer.Clock.LastDelay() > HeldUp;
+}
+
+}  // namespace
 
 void GatewayManager::Parts::MakePaths(const std::vector<std::shared_ptr<Transport>> &transports,
                                       const RandomSource &random)
@@ -127,8 +143,24 @@ void GatewayManager::Parts::Forget(const std::string &node, std::size_t path, Du
     _outgoing->Forget(node);
 }
 
+void GatewayManager::Parts::LookForLateBeats(Duration now)
+{
+    _nextLateLook = now + LateLookPeriod;
+    for (std::size_t path = 0; path < _paths.size(); ++path)
+    {
+        for (const PeerTable::Peer *peer : _paths[path]->Beats().Peers().Heard())
+        {
+            _choice.Late(peer->Node, path, IsLate(*peer, now));
+        }
+    }
+}
+
 void GatewayManager::Parts::ChoosePaths(Heard &change, Duration now)
 {
+    if (now >= _nextLateLook)
+    {
+        LookForLateBeats(now);
+    }
     for (const auto &[node, came] : _links.TakeCameBy())
     {
         for (std::size_t path = 0; path < _paths.size(); ++path)

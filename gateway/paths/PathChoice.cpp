@@ -22,13 +22,24 @@ PathChoice::Node &PathChoice::NodeOf(const std::string &node)
     return found;
 }
 
-void PathChoice::Fail(Way &way, Duration now)
+void PathChoice::Fail(Node &node, std::size_t path, Duration now) const
 {
-    if (way.RestsUntil && now - *way.RestsUntil > Sound)
+    Way &way = node.Ways[path];
+    if (way.IsSound(now))
     {
         way.Rest.Reset();
     }
     way.RestFor = way.Rest.Next();
+    bool isBest = true;  // of those on which the node is UP, by their budgets
+    for (std::size_t other = 0; other < _paths; ++other)
+    {
+        isBest = isBest && (other == path || node.Ways[other].State != NodeState::UP ||
+                            _budgets[other] < _budgets[path]);
+    }
+    if (isBest)
+    {
+        way.RestFor = std::min(way.RestFor, ShortRest);
+    }
     way.RestsUntil = now + way.RestFor;
 }
 
@@ -49,12 +60,21 @@ void PathChoice::Heard(const std::string &node, std::size_t path, NodeState stat
     }
     if (before == NodeState::UP && state != NodeState::UP)
     {
-        Fail(way, now);
+        Fail(of, path, now);
     }
     else if (before != NodeState::UP && state == NodeState::UP && way.RestsUntil)
     {
         // The rest begins when the path is there again.
         way.RestsUntil = now + way.RestFor;
+    }
+    if (heard && !hearsHereFirst)
+    {
+        // The node hears this one by an earlier path again, which has to prove itself.
+        for (std::size_t earlier = 0; earlier < path; ++earlier)
+        {
+            std::optional<Duration> &rests = of.Ways[earlier].RestsUntil;
+            rests = std::max(rests.value_or(now), now);
+        }
     }
     Choose(node, of, now);
 }
@@ -84,7 +104,7 @@ void PathChoice::Missed(const std::string &node, std::size_t path, const BeatCou
     way.Missed = std::min(way.Missed, MostMissed);
     if (isOver && beats.Missed() > before.Missed() && !way.Rests(now) && IsAnyBetter(of, path, now))
     {
-        Fail(way, now);
+        Fail(of, path, now);
         Choose(node, of, now);
     }
 }
@@ -111,17 +131,38 @@ bool PathChoice::Unanswered(const std::string &node, Duration now)
         return false;
     }
     Node &of = found->second;
+    const std::optional<std::size_t> other = Other(of, now);
+    if (!other)
+    {
+        return false;
+    }
+    const bool isNew = Second(node, now) != other;
+    of.Second = other;
+    of.SecondSince = now;
+    return isNew;
+}
+
+std::optional<std::size_t> PathChoice::Other(const Node &node, Duration now) const
+{
+    std::optional<std::size_t> other;
     for (std::size_t path = 0; path < _paths; ++path)
     {
-        if (path != of.Choice && of.Ways[path].State == NodeState::UP)
+        if (path != node.Choice && node.Ways[path].State == NodeState::UP &&
+            (!other || (!node.Ways[*other].IsSteady(now) && node.Ways[path].IsSteady(now))))
         {
-            const bool isNew = Second(node, now) != path;
-            of.Second = path;
-            of.SecondSince = now;
-            return isNew;
+            other = path;
         }
     }
-    return false;
+    return other;
+}
+
+void PathChoice::Late(const std::string &node, std::size_t path, bool isLate)
+{
+    const auto found = _nodes.find(node);
+    if (_paths > 1 && found != _nodes.end())
+    {
+        found->second.Ways[path].IsLate = isLate;
+    }
 }
 
 void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
@@ -239,6 +280,12 @@ std::optional<std::size_t> PathChoice::Second(std::string_view node, Duration no
     {
         return of.Second;
     }
+    const Way &chosen = of.Ways[of.Choice];
+    const std::optional<std::size_t> other = chosen.IsSteady(now) ? std::nullopt : Other(of, now);
+    if (other && (chosen.IsLate || of.Ways[*other].IsSteady(now)))
+    {
+        return other;
+    }
     return isAnswer && of.AnswersBy != of.Choice && now < of.AnswersUntil ? of.AnswersBy : std::nullopt;
 }
 
@@ -270,6 +317,12 @@ bool PathChoice::CarriesAny(std::size_t path) const
         }
     }
     return !any && path == 0;
+}
+
+bool PathChoice::IsSecondOfAny(std::size_t path, Duration now) const
+{
+    return std::any_of(_nodes.begin(), _nodes.end(),
+                       [this, path, now](const auto &node) { return Second(node.first, now, true) == path; });
 }
 
 }  // namespace Rabit

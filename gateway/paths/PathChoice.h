@@ -32,10 +32,15 @@ namespace Rabit
 //   count. That holds only if another path misses half as many at most and has no smaller budget, since links
 //   repair losses, and a slow path cannot carry what a fast one does. Beats that are missed during a rest are
 //   no further failure.
+// - A path rests for ShortRest at most if the others have smaller budgets: a slow path does not stand in for
+// a
+//   fast one for half a minute.
 // - If the node is UP on no path, the choice stays as it was.
-// - While queue messages for a node are unanswered for longer than usual, and while the node itself sends by
-//   another path, link frames go by a second path as well (Second), since nobody knows yet which of them
-//   arrives. That ends after some time, if the node has been heard on the chosen path since.
+// - While the chosen path is in doubt, a second one is used as well (Second), since nobody knows yet which of
+//   them works. It is in doubt while queue messages are unanswered for longer than usual, or the node itself
+//   sends by another path; that ends after some time, if the node has been heard on the chosen path since. It
+//   is in doubt while the node's beat is late there: it did not come, or was held up on the way. And it is in
+//   doubt from a failure until it counts as sound again, if another path is sound.
 // - While messages of the node come by another path than the chosen one, answers go by that path as well: the
 //   node may lack those that went by the chosen one. Answers to answers do not, so this ends with the doubt.
 //
@@ -55,6 +60,8 @@ public:
     static constexpr Backoff::Settings Rest{.First = std::chrono::seconds(1),
                                             .Longest = std::chrono::seconds(30)};
     static constexpr Duration Sound = std::chrono::seconds(10);
+    // Longer than a path takes that is gone for 2 s and there for 2 s, so that one is left alone.
+    static constexpr Duration ShortRest = std::chrono::seconds(4);
     // One loss in ten makes a path fail about once in some minutes, one in five twice a minute.
     static constexpr double MostMissed = 4.0;
     static constexpr double MissedForgiven = 0.25;
@@ -71,6 +78,8 @@ public:
     // incarnation. To be called when beats did not come, for the other paths first, and before Heard tells
     // what the beat after them says.
     void Missed(const std::string &node, std::size_t path, const BeatCount &beats, Duration now);
+    // Whether the node's newest beat by that path is older than beats usually become.
+    void Late(const std::string &node, std::size_t path, bool isLate);
     // A queue message for the node remains unanswered for longer than usual. Returns true if frames go by a
     // second path from now on.
     bool Unanswered(const std::string &node, Duration now);
@@ -87,7 +96,7 @@ public:
 
     // The path of that node; the first one if the node is not known.
     std::size_t Of(std::string_view node) const;
-    // A path by which link frames for that node go as well. `isAnswer`: frames without messages.
+    // A path that is used for that node as well. `isAnswer`: for link frames without messages.
     std::optional<std::size_t> Second(std::string_view node, Duration now, bool isAnswer = false) const;
     // The nodes that are heard well on that path and on no better one, though there are better ones.
     std::vector<std::string> FirstHeardOn(std::size_t path) const;
@@ -95,12 +104,15 @@ public:
     bool TakeFirstHeardChanged() { return std::exchange(_firstHeardChanged, false); }
     // True if any node that is not LOST is reached by that path. The first path counts while nobody is known.
     bool CarriesAny(std::size_t path) const;
+    // True if that path is the second one of any node.
+    bool IsSecondOfAny(std::size_t path, Duration now) const;
 
 private:
     struct Way
     {
         Gateway::NodeState State = Gateway::NodeState::LOST;
         bool HearsHereFirst = false;
+        bool IsLate = false;
         Backoff Rest{PathChoice::Rest};
         Duration RestFor{0};  // after the last failure
         std::optional<Duration> RestsUntil;
@@ -109,6 +121,11 @@ private:
         Duration CameAt = -Silence;  // the last frame of the links that came by it first
 
         bool Rests(Duration now) const { return RestsUntil && *RestsUntil > now; }
+        bool IsSound(Duration now) const { return !RestsUntil || now - *RestsUntil > Sound; }
+        bool IsSteady(Duration now) const
+        {
+            return State == Gateway::NodeState::UP && !IsLate && IsSound(now);
+        }
     };
     struct Node
     {
@@ -122,7 +139,9 @@ private:
     };
 
     Node &NodeOf(const std::string &node);
-    static void Fail(Way &way, Duration now);
+    void Fail(Node &node, std::size_t path, Duration now) const;
+    // The first other path than the chosen one on which the node is UP, a steady one before the others.
+    std::optional<std::size_t> Other(const Node &node, Duration now) const;
     // True if there is a path that misses clearly fewer beats than that one, which misses many, and that may
     // carry as much.
     bool IsAnyBetter(const Node &node, std::size_t path, Duration now) const;

@@ -125,6 +125,57 @@ TEST_F(PathChoiceTest, BothPathsAreUsedUntilTheNodeIsHeardOnTheChosenOne)
     EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both), std::nullopt);
 }
 
+TEST_F(PathChoiceTest, APathThatFailedHasCompanyUntilItIsSoundAgain)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    FailMesh(5s);
+    EXPECT_EQ(ChosenAt(7s), Mesh);
+    EXPECT_EQ(choice.Second("uav1", 7s), Modem);
+    EXPECT_TRUE(choice.IsSecondOfAny(Modem, 7s));
+    EXPECT_EQ(choice.Second("uav1", 7s + PathChoice::Sound), Modem);
+    EXPECT_EQ(choice.Second("uav1", 7s + PathChoice::Sound + 1ms), std::nullopt);
+    EXPECT_FALSE(choice.IsSecondOfAny(Modem, 7s + PathChoice::Sound + 1ms));
+}
+
+TEST_F(PathChoiceTest, IfAllPathsHaveFailedNoneIsCompanyForAnother)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    Hear(Modem, NodeState::LOST, 5s);
+    FailMesh(5s);
+    Hear(Modem, NodeState::UP, 6s);
+    EXPECT_EQ(ChosenAt(8s), Mesh);
+    EXPECT_EQ(choice.Second("uav1", 8s), std::nullopt);
+}
+
+TEST_F(PathChoiceTest, WhileABeatIsLateTheOtherPathIsUsedAsWell)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    choice.Late("uav1", Mesh, true);
+    EXPECT_EQ(ChosenAt(5s), Mesh);
+    EXPECT_EQ(choice.Second("uav1", 5s), Modem);
+    choice.Late("uav1", Mesh, false);
+    EXPECT_EQ(choice.Second("uav1", 5s), std::nullopt);
+}
+
+TEST(PathChoiceOfABigAndASmallPath, LeavesTheBigOneForSomeSecondsAtMost)
+{
+    PathChoice choice(2, {1e6, 1500});
+    choice.Heard("uav1", Mesh, NodeState::UP, false, 0s);
+    choice.Heard("uav1", Modem, NodeState::UP, false, 0s);
+    for (const PathChoice::Duration now : {5s, 7s, 9s, 11s, 13s})
+    {
+        choice.Heard("uav1", Mesh, NodeState::STALE, false, now);
+        choice.Heard("uav1", Mesh, NodeState::UP, false, now + 1s);
+    }
+    choice.TakeChanged(14s + PathChoice::ShortRest - 1ms);
+    EXPECT_EQ(choice.Of("uav1"), Modem);
+    choice.TakeChanged(14s + PathChoice::ShortRest);
+    EXPECT_EQ(choice.Of("uav1"), Mesh);
+}
+
 // Beats of a path that come and do not come, in turns, from that time on. Returns when the last
 // loss was noticed.
 PathChoice::Duration Lose(PathChoice &choice, int missed, int came, int times, PathChoice::Duration now,
