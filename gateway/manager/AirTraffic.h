@@ -113,7 +113,7 @@ private:
     TypeExchange &_types;
     const PathChoice &_choice;
     const std::size_t _path;
-    // What goes by this path of States and telemetry.
+    // The States and telemetry that go by this path.
     enum class Mirrored
     {
         Nothing,
