@@ -49,7 +49,7 @@ if [ $# -eq 0 ]; then
     set -- -LE 'mutation|bare_long|field_long|fuzz_long|package_long|soak'
 fi
 "$root/docker/install-packages.sh"
-"$root/docker/install-packages.sh" "$root/docker/packages-check.txt"
+"$root/docker/install-packages.sh" "$root/docker/packages-check.txt" "$root/docker/packages-pack.txt"
 "$root/docker/build-preset.sh" release
 tests=(ctest --preset release -j4 --progress "$@")
 [ ! -t 1 ] || exec "${tests[@]}"

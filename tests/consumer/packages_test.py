@@ -63,6 +63,12 @@ def check_dependencies(packages):
     print("ok: dependencies")
 
 
+def check_rules(packages):
+    """Debian's rules, as lintian knows them; docker/debian/overrides says which are broken, and why."""
+    consumer.run("lintian", "--no-cfg", "--allow-root", "--fail-on", "error,warning", *packages.values())
+    print("ok: lintian")
+
+
 def main():
     cmake, build = sys.argv[1], pathlib.Path(sys.argv[2])
     consumer.harness.enter_namespace()
@@ -71,6 +77,7 @@ def main():
         packages = make_packages(cmake, build, folder / "packages")
         compare_with_readme(packages)
         check_dependencies(packages)
+        check_rules(packages)
         for package in packages.values():
             consumer.run("dpkg-deb", "-x", package, folder / "root")
         usr = folder / "root" / "usr"
