@@ -177,7 +177,7 @@ private:
         for (++_at; Peek(0) != quote; ++count)
         {
             const char letter = Peek(0);
-            if (letter < 0x20 || letter == 0x7f)
+            if (letter < ' ' || letter > '~')
             {
                 Refuse("a text or character is not closed, or not printable");
                 return;

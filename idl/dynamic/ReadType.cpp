@@ -23,7 +23,7 @@ std::string Line(std::string_view reason)
 {
     std::string line(reason.substr(0, 300));
     std::replace_if(
-        line.begin(), line.end(), [](char letter) { return letter < 0x20 || letter == 0x7f; }, '?');
+        line.begin(), line.end(), [](char letter) { return letter < ' ' || letter > '~'; }, '?');
     return line;
 }
 

@@ -42,6 +42,8 @@ TEST(HostileText, OfAnotherLanguageIsRefused)
               "line 1: a comment has a character that is not supported");
     EXPECT_EQ(WhyNot(std::string("struct S { long a; };\0", 22)),
               "line 1: a character is not printable ASCII");
+    EXPECT_EQ(WhyNot("struct S { @unit(\"\xc2\xb0\") long a; };"),
+              "line 1: a text or character is not closed, or not printable");
     EXPECT_EQ(WhyNot(""), "the text defines no message 'S'");
 }
 
