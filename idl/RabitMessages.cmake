@@ -57,7 +57,7 @@ function(rabit_add_messages target)
     set(source ${directory}/${name}.cpp)
     add_custom_command(
       OUTPUT ${header} ${source}
-      COMMAND ${RABIT_IDLC} ${options} -I "$<JOIN:${include_options},;-I;>"
+      COMMAND ${CMAKE_CROSSCOMPILING_EMULATOR} ${RABIT_IDLC} ${options} -I "$<JOIN:${include_options},;-I;>"
               -l $<TARGET_FILE:Rabit::IdlcPlugin> -o ${directory} ${file}
       DEPENDS ${file} Rabit::IdlcPlugin $<TARGET_FILE:Rabit::IdlcPlugin>
       DEPFILE ${directory}/${name}.d

@@ -2,8 +2,9 @@
 # Installs the Debian packages that are missing, builds the release preset and runs all tests.
 #   tests/run.sh [ARGUMENT...]   arguments go to ctest, for instance: tests/run.sh -L core
 #   tests/run.sh --quick         only the unit tests of core, idl, transport and gateway, and one exchange of two nodes
+#   tests/run.sh --quick arm64   the same, compiled for arm64 and run under qemu-user: docker/README.md says what it needs
 # Without arguments all tests run, except those with the label mutation, which test the tests, and those with the labels
-# bare_long, field_long, fuzz_long, package_long and soak: each set takes five minutes or more, soak an hour.
+# arm64_long, bare_long, field_long, fuzz_long, package_long and soak: each set takes five minutes or more, soak an hour.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
@@ -23,30 +24,33 @@ step() {
     [ "$result" = ok ] || printf '%s\n' "$output"
 }
 
+# quick PRESET
 quick() {
-    "$root/docker/install-packages.sh"
-    "$root/docker/build-preset.sh" release "${unit_tests[@]}" sensor display
+    local preset=$1 under=() packages=build
+    [ "$preset" = release ] || { under=(qemu-aarch64-static) packages=arm64; }
+    "$root/docker/install-packages.sh" "$root/docker/packages-$packages.txt"
+    "$root/docker/build-preset.sh" "$preset" "${unit_tests[@]}" sensor display
     local number=0 failed=0 steps=$((${#unit_tests[@]} + 1)) transport=fastdds
-    grep -q '^RABIT_WITH_FASTDDS:BOOL=OFF' build/release/CMakeCache.txt && transport=cyclonedds
+    grep -q '^RABIT_WITH_FASTDDS:BOOL=OFF' "build/$preset/CMakeCache.txt" && transport=cyclonedds
     for test in "${unit_tests[@]}"; do
         number=$((number + 1))
-        step "$number" "$test" tests/whole_program.sh "build/release/bin/$test"
+        step "$number" "$test" tests/whole_program.sh "${under[@]}" "build/$preset/bin/$test"
     done
     step "$steps" "two nodes over $transport" env PYTHONDONTWRITEBYTECODE=1 python3 tests/examples/two_nodes_test.py \
-        build/release/bin "$root" "$transport"
+        "build/$preset/bin" "$root" "$transport" "${under[@]}"
     [ "$failed" -eq 0 ] || { echo "$failed of $steps failed"; exit 1; }
     echo "all passed"
 }
 
 if [ "${1:-}" = --quick ]; then
-    [ $# -eq 1 ] || { echo "run.sh: --quick takes no other arguments" >&2; exit 2; }
+    [ $# -eq 1 ] || [ "$*" = "--quick arm64" ] || { echo "run.sh: --quick takes no other argument than arm64" >&2; exit 2; }
     echo "The quick tests: unit tests and one exchange of two nodes. If nothing is built yet, compiling takes longest."
-    quick
+    quick "${2:-release}"
     exit
 fi
 if [ $# -eq 0 ]; then
     echo "All tests: about 20 minutes on two cores, and 30 more if nothing is built yet. --quick: a part of them."
-    set -- -LE 'mutation|bare_long|field_long|fuzz_long|package_long|soak'
+    set -- -LE 'mutation|arm64_long|bare_long|field_long|fuzz_long|package_long|soak'
 fi
 "$root/docker/install-packages.sh"
 "$root/docker/install-packages.sh" "$root/docker/packages-check.txt" "$root/docker/packages-pack.txt"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # Runs all cases of a GoogleTest program. Of its output, shows only the parts of failed cases, or of the case that ended the
 # program, and the number of cases.
-#   whole_program.sh PROGRAM
+#   whole_program.sh PROGRAM    or what runs it, as `qemu-aarch64-static PROGRAM`
 set -uo pipefail
-"$1" 2>&1 | awk '
+"$@" 2>&1 | awk '
     /^\[ RUN      \]/ { said = ""; inside = 1 }
     inside { said = said $0 "\n" }
     inside && /\[       OK \]|\[  SKIPPED \]/ { said = ""; inside = 0; next }

@@ -1,7 +1,8 @@
 """examples/two_nodes as a user runs it: the nodes talk, over each pair of backends; what is wrong with a configuration
 is one line and exit code 2; Ctrl-C ends a node in order.
 
-Usage: two_nodes_test.py BIN ROOT TRANSPORT,...
+Usage: two_nodes_test.py BIN ROOT TRANSPORT,... [EMULATOR]
+The emulator runs the programs if they are of another processor.
 """
 
 import pathlib
@@ -16,6 +17,7 @@ import harness  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 120
+EMULATOR = sys.argv[4:]
 
 
 def check(good, what):
@@ -27,7 +29,7 @@ def check(good, what):
 def talk(programs, folder, first, second):
     with harness.Processes() as processes:
         def start(name, transport):
-            return processes.start([programs / name, "--config", folder / f"{name}.yaml", "--transport", transport,
+            return processes.start([*EMULATOR, programs / name, "--config", folder / f"{name}.yaml", "--transport", transport,
                                     "--domain", harness.domain()])
         display = start("display", second)
         sensor = start("sensor", first)
@@ -43,7 +45,7 @@ def refused(programs, folder, name, text, line):
     """Also by --check, and without starting anything."""
     (folder / "wrong.yaml").write_text(text)
     for extra in [], ["--check"]:
-        done = subprocess.run([programs / name, "--config", folder / "wrong.yaml", *extra], capture_output=True,
+        done = subprocess.run([*EMULATOR, programs / name, "--config", folder / "wrong.yaml", *extra], capture_output=True,
                               text=True, timeout=LIMIT_S, check=False)
         check(done.returncode == 2, f"exit code 2 for {text!r} {extra}")
         check(done.stdout == "" and done.stderr == f"{folder}/wrong.yaml:{line}\n", f"one line, {done.stderr!r}")
@@ -61,7 +63,7 @@ def main():
                 "3: unknown IDL type `TwoNodes::Readin`; did you mean `TwoNodes::Reading`?")
         refused(programs, folder, "display", "node: display\ndomian: 7\n",
                 "2: unknown key `domian` in the configuration; did you mean `domain`?")
-        missing = subprocess.run([programs / "sensor", "--config", folder / "none.yaml"], capture_output=True, text=True,
+        missing = subprocess.run([*EMULATOR, programs / "sensor", "--config", folder / "none.yaml"], capture_output=True, text=True,
                                  timeout=LIMIT_S, check=False)
         check(missing.returncode == 2 and missing.stderr.count("\n") == 1, f"no file: {missing.stderr!r}")
         for first in transports:

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Nodes of this Debian beside nodes of the other one (12 and 13), over every pair of backends: what interop_test.py and
-secured_pairs_test.py do, the latter at both levels.
+secured_pairs_test.py do, the latter at both levels. With --arm64, beside nodes of Debian 12 for arm64 under qemu-user,
+whose unit tests are run first.
 
-Usage: versions_test.py RABIT NODE TRANSPORT...
+Usage: versions_test.py [--arm64] RABIT NODE TRANSPORT...
 Makes a root of the other Debian and builds the node in it, which takes half an hour and more; with RABIT_OTHER_ROOT it
 uses a root that docker/bare.sh has kept. Ends with 77 where it cannot make one, or no network namespace."""
 
@@ -21,21 +22,24 @@ from secured_pairs_test import Fleet  # noqa: E402
 AT_ONCE = 4  # pairs of nodes
 SKIPPED = 77
 OTHER_ROOT = "RABIT_OTHER_ROOT"
-BUILT_NODE = "/rabit/build/release/bin/interop_node"
 RELEASES = {"bookworm": "trixie", "trixie": "bookworm"}
+BUILD = "docker/install-packages.sh && docker/build-preset.sh release interop_node"
+BUILT_NODE = ["/rabit/build/release/bin/interop_node"]
+BUILD_ARM64 = ("dpkg --add-architecture arm64 && ./tests/run.sh --quick arm64 && "
+               "docker/build-preset.sh arm64 interop_node")
+BUILT_NODE_ARM64 = ["qemu-aarch64-static", "/rabit/build/arm64/bin/interop_node"]
 # The nodes of both roots find their keys under the same names.
 INSIDE = 'mount --rbind /dev "$0/dev"; mount --bind "$1" "$0/tmp"; root=$0; shift; exec chroot "$root" "$@"'
 
 
-def make_root(folder):
+def make_root(folder, arm64):
     """Returns the exit code of bare.sh."""
-    release = RELEASES.get(harness.debian())
+    release = "bookworm" if arm64 else RELEASES.get(harness.debian())
     if release is None:
         print("skipped: needs Debian 12 or 13")
         return SKIPPED
     return subprocess.run([HERE.parents[2] / "docker" / "bare.sh", "--keep", folder, release,
-                           "docker/install-packages.sh && docker/build-preset.sh release interop_node"],
-                          check=False).returncode
+                           BUILD_ARM64 if arm64 else BUILD], check=False).returncode
 
 
 def run(cases):
@@ -49,9 +53,9 @@ def labelled(case, label):
     return case
 
 
-def compare(rabit, node, root, transports):
+def compare(rabit, node, root, built_node, transports):
     here = [node]
-    there = ["unshare", "--mount", "sh", "-ec", INSIDE, root, tempfile.gettempdir(), BUILT_NODE]
+    there = ["unshare", "--mount", "sh", "-ec", INSIDE, root, tempfile.gettempdir(), *built_node]
     pairs = [(first, second) for first in transports for second in transports]
     rows = [labelled(Row(nodes, *pair, 7 * i), f"{pair} {name}")
             for i, (nodes, pair, name) in enumerate((nodes, pair, name) for pair in pairs for nodes, name in
@@ -59,7 +63,7 @@ def compare(rabit, node, root, transports):
     fleets = [labelled(Fleet(rabit, (here, there), pair, level, 7 * i), f"{pair} here, other {level}")
               for i, (pair, level) in enumerate((pair, level) for pair in pairs for level in ("encrypt", "sign"))]
     failures = run(rows)
-    print("By turns the first node is of this Debian, and of the other one:")
+    print("By turns the first node is of this machine, and of the other root:")
     print_table(rows)
     failures += run(fleets)
     print(f"{len(fleets)} fleets with keys, {sum(1 for fleet in fleets if fleet.failure)} failed")
@@ -68,15 +72,17 @@ def compare(rabit, node, root, transports):
 
 
 def main():
-    rabit, node, transports = sys.argv[1], sys.argv[2], sys.argv[3:]
+    arm64 = sys.argv[1] == "--arm64"
+    rabit, node, *transports = sys.argv[2:] if arm64 else sys.argv[1:]
     if os.geteuid() != 0 or not harness.can_make_namespaces():
         print("skipped: needs root and network namespaces")
         sys.exit(SKIPPED)
     if OTHER_ROOT in os.environ:
         harness.enter_namespace()
-        sys.exit(compare(rabit, node, os.environ[OTHER_ROOT], transports))
+        sys.exit(compare(rabit, node, os.environ[OTHER_ROOT],
+                         BUILT_NODE_ARM64 if arm64 else BUILT_NODE, transports))
     with tempfile.TemporaryDirectory(prefix="rabit_versions_") as folder:
-        code = make_root(folder)
+        code = make_root(folder, arm64)
         if code != 0:
             sys.exit(code)
         sys.exit(subprocess.run([sys.executable, *sys.argv], env={**os.environ, OTHER_ROOT: f"{folder}/root"},
