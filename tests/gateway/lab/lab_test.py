@@ -55,7 +55,7 @@ expect:
 """
 
 # uav1 and uav2 are hidden from each other; since their frames collide, nothing is expected of them. The way from uav3 to uav5
-# fails for a while, and uav4 flies away and comes back.
+# fails for a while, later the way back does, and uav4 flies away and comes back.
 RADIO = """network:
   radio:
     rate: 2Mbit/s
@@ -67,15 +67,20 @@ RADIO = """network:
     hidden: [[uav1, uav2]]
     links: [{from: uav2, to: uav3, loss: 40%, delay: 50ms}]
     range: {from: track.csv, metres: 500}
-run: 27s
+run: 33s
 events:
   - {at: 11s, loss: 100%, from: uav3, to: uav5, for: 5s}
   - {at: 12s, loss: 10%, from: uav2, to: uav3, for: 1s}
-  - {at: 25s, outage: radio, for: 1s}
+  - {at: 12s, delay: 40ms, jitter: 5ms, from: uav5, to: uav3, for: 2s}
+  - {at: 20s, deaf: uav3, of: uav5, for: 6s}
+  - {at: 31s, rate: 500kbit/s, for: 1s}
+  - {at: 31s, outage: radio, for: 1s}
 expect:
   - uav3 up within 11s at uav5
   - uav3 lost within 5s after 11s at uav5
   - uav3 up within 4s after 16s at uav5
+  - uav5 lost within 5s after 20s at uav3
+  - uav5 up within 4s after 26s at uav3
   - uav4 lost within 5s after 14s at uav5
   - uav4 up within 5s after 22s at uav5
   - "radio: used < 50%"
