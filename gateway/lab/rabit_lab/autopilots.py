@@ -4,6 +4,9 @@ import os
 import pathlib
 import shutil
 
+from rabit_lab import marked
+from rabit_lab.marked import nearest
+
 MAVLINK, DDS = "mavlink", "dds"
 PX4, ARDUCOPTER = "px4-sih", "arducopter"
 KINDS = (PX4, ARDUCOPTER)
@@ -13,10 +16,30 @@ ARDUCOPTER_PORT = 14550
 PX4_PORT, PX4_LAST_PORT = 14540, 14549
 
 
-def mavlink_port(kind, instance):
-    """The port of loopback to which an autopilot sends. Autopilots of one kind are numbered from 0: nodes have loopback of their
-    own, but the lock files of PX4 are in a folder that all share."""
-    return min(PX4_PORT + instance, PX4_LAST_PORT) if kind == PX4 else ARDUCOPTER_PORT
+def read(reader, node, value, counts):
+    """(the port of loopback to which the autopilot of a node sends MAVLink, its programs). A mistake is the reader's error.
+    `counts` numbers those of one kind from 0: nodes have loopback of their own, but PX4's lock files are in a folder that all
+    share."""
+    at, section = value.line_of("autopilot"), value["autopilot"]
+    if isinstance(section, marked.Map):
+        reader.keys(section, ("kind", "over", "options"), "autopilot")
+    else:
+        section = {"kind": section}
+    kind, over = section.get("kind"), section.get("over", MAVLINK)
+    if kind not in KINDS:
+        reader.fail(at, f"autopilot: {' or '.join(KINDS)}, not `{kind}`{nearest(kind, KINDS)}")
+    if over not in (MAVLINK, DDS):
+        reader.fail(at, f"autopilot: `over` is {MAVLINK} or {DDS}, not `{over}`")
+    if node.image:
+        reader.fail(at, f"autopilot: node {node.name} has an image; start the autopilot in it")
+    options = [str(option).replace("{node}", node.name)
+               for option in reader.list(section.get("options", marked.List()), at, "options")]
+    instance = counts[kind] = counts.get(kind, -1) + 1
+    try:
+        found = programs(kind, over, node.name, instance, options)
+    except ValueError as error:
+        reader.fail(at, f"node {node.name}, autopilot {kind}: {error}")
+    return min(PX4_PORT + instance, PX4_LAST_PORT) if kind == PX4 else ARDUCOPTER_PORT, found
 
 
 def programs(kind, over, node, instance, options):

@@ -140,7 +140,7 @@ class Reader:
         self.nodes = {}
         self.networks = {}
         self._autopilots = {}  # name -> Node
-        self._instances = {}  # kind of autopilot -> how many there are
+        self._counts = {}  # kind of autopilot -> how many there are
 
     def fail(self, line, text):
         raise ScenarioError(f"{self.path}:{line}", text)
@@ -274,31 +274,12 @@ class Reader:
         """Adds its programs, which run beside the node from its first start to the end of the run."""
         if "autopilot" not in value:
             return
-        at, section = value.line_of("autopilot"), value["autopilot"]
-        section = section if isinstance(section, marked.Map) else {"kind": section}
-        if isinstance(section, marked.Map):
-            self.keys(section, ("kind", "over", "options"), "autopilot")
-        kind, over = section.get("kind"), section.get("over", autopilots.MAVLINK)
-        if kind not in autopilots.KINDS:
-            self.fail(at, f"autopilot: {' or '.join(autopilots.KINDS)}, not `{kind}`{nearest(kind, autopilots.KINDS)}")
-        if over not in (autopilots.MAVLINK, autopilots.DDS):
-            self.fail(at, f"autopilot: `over` is {autopilots.MAVLINK} or {autopilots.DDS}, not `{over}`")
-        if node.image:
-            self.fail(at, f"autopilot: node {node.name} has an image; start the autopilot in it")
-        options = [str(option) for option in self.list(section.get("options", marked.List()), at, "options")]
-        instance = self._instances.setdefault(kind, 0)
-        self._instances[kind] += 1
-        try:
-            programs = autopilots.programs(kind, over, node.name, instance,
-                                           [option.replace("{node}", node.name) for option in options])
-        except ValueError as error:
-            self.fail(at, f"node {node.name}, autopilot {kind}: {error}")
-        port = str(autopilots.mavlink_port(kind, instance))
-        node.command = [word.replace("{mavlink}", port) for word in node.command]
+        port, programs = autopilots.read(self, node, value, self._counts)
+        node.command = [word.replace("{mavlink}", str(port)) for word in node.command]
         for word, argv, env in programs:
             name = f"{node.name}.{word}"
             if name in self.nodes:
-                self.fail(at, f"two nodes would be called `{name}`")
+                self.fail(value.line_of("autopilot"), f"two nodes would be called `{name}`")
             self._autopilots[name] = Node(name, argv, None, {**env, **node.env}, node.start or 0.0, True, node.line, node.name)
 
     def _read_networks(self, top):
