@@ -25,7 +25,7 @@ section { background: #fff; border-radius: 4px; padding: 12px 18px; margin: 10px
 table { border-collapse: collapse; width: 100%; } th { text-align: left; color: #5f6b78; font-weight: 500; }
 td, th { padding: 4px 12px 4px 0; vertical-align: top; border-bottom: 1px solid #e6e9ed; }
 .number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
-.narrow { width: auto; }
+.narrow { width: auto; } .figures td, .figures th { white-space: nowrap; }
 .mark { font-weight: 700; white-space: nowrap; } .good .mark { color: #2f7d3b; } .bad .mark { color: #c22a22; }
 tr.bad td { background: #fdf1f0; }
 pre { margin: 0; font: 13px/1.45 ui-monospace, monospace; white-space: pre-wrap; }
@@ -35,7 +35,7 @@ svg { max-width: 100%; height: auto; display: block; margin: 6px 0 14px; }
 input, select { font: inherit; padding: 3px 8px; margin: 0 8px 8px 0; }
 @media (max-width: 800px) {
   main { padding: 10px 8px 40px; } section { padding: 10px; } svg { width: 800px; max-width: none; }
-  td, th { overflow-wrap: anywhere; } #log td:nth-child(-n+3) { overflow-wrap: normal; }
+  #log td:last-child { overflow-wrap: anywhere; }
 }
 """
 

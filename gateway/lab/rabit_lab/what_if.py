@@ -323,7 +323,7 @@ def html_table(heads, found):
     def line(kind, line_cells):
         return "<tr>" + "".join(f'<{kind} class="{"" if n in words else "number"}">{report.escape(cell)}</{kind}>'
                                 for n, cell in enumerate(line_cells)) + "</tr>"
-    return f"<table>{line('th', heads)}{''.join(line('td', one) for one in found)}</table>"
+    return f"<table class='figures'>{line('th', heads)}{''.join(line('td', one) for one in found)}</table>"
 
 
 def print_table(heads, found):
@@ -359,6 +359,7 @@ def show(flown, radio, folder):
         sections.append(("Queues", html_table(QUEUE_HEADS, queues)))
     sections += [("What the limits left each node", f"<p>{report.escape(medium_text(flown, radio))}</p>"
                   + html_table(NODE_HEADS, nodes)),
+                 ("Events", report.event_rows(flight)),
                  ("Over time", medium_pictures(flown, radio) + shown),
                  ("Streams", html_table(("stream", *HEADS[2:9], HEADS[10]), stream_rows)),
                  ("Log", report.log_section(flight)),
