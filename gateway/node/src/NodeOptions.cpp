@@ -6,12 +6,15 @@
 #include <CLI/CLI.hpp>
 
 #include <iostream>
+#include <string>
 
 namespace Rabit
 {
 
 namespace
 {
+
+constexpr int highestDomain = 232;
 
 void Override(GatewayConfig &config, const NodeOptions &options)
 {
@@ -46,8 +49,22 @@ void AddNetworkOptions(CLI::App &app, NodeOptions &options)
                    "The gateway's configuration file" +
                        (options.ConfigFile.empty() ? "" : " (default: " + options.ConfigFile + ")"));
     app.add_option("--node", options.Node, "Name of this node, in place of the file's");
-    app.add_option("--domain", options.Domain, "DDS domain, in place of the file's")
-        ->check(CLI::Range(0, 232));
+    // The callback refuses the value, not a check: CLI11 2.4 ignores a variable of the environment that a
+    // check refuses.
+    app.add_option_function<int>(
+           "--domain",
+           [&options](const int &domain)
+           {
+               if (domain < 0 || domain > highestDomain)
+               {
+                   throw CLI::ValidationError("--domain", "Value " + std::to_string(domain) +
+                                                              " not in range 0 to " +
+                                                              std::to_string(highestDomain));
+               }
+               options.Domain = domain;
+           },
+           "DDS domain, in place of the file's")
+        ->type_name("INT in [0 - " + std::to_string(highestDomain) + "]");
     app.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
     app.add_option("--keys", options.Keys, "Folder of this node's keys, in place of the file's");
 }
