@@ -46,6 +46,7 @@ cp /etc/resolv.conf "$root/etc/resolv.conf"
 echo "bare.sh: $command" >&2
 # shellcheck disable=SC2016 # expanded inside
 unshare --mount --pid --fork --kill-child sh -ec '
+    mount --bind "$0" "$0" # in a root that is no mount, `unshare --mount` and `ip netns exec` fail
     mount --rbind /dev "$0/dev"
     mount -t proc proc "$0/proc"
     mount --rbind /sys "$0/sys"
