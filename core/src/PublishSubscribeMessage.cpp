@@ -1,11 +1,12 @@
 #include <rabit/PublishSubscribeMessage.h>
 
+#include "MessageTypes.h"
+
 #include <rabit/RabitManagerTrace.h>
 #include <rabit/RabitMessage.h>
 
 #include <optional>
 #include <stdexcept>
-#include <typeinfo>
 #include <utility>
 
 namespace Rabit
@@ -160,8 +161,7 @@ void PublishSubscribeMessage::TellFetched(const RabitMessage &msg) const
 
 inline void PublishSubscribeMessage::CopyFromMessage(RabitMessage &msg)
 {
-    // If the type is the same, the copy counts as done even if the override returns false.
-    if (!_message->CopyMessage(&msg) && typeid(msg) != _type)
+    if (!_message->CopyMessage(&msg) && IsRefusal(*_message, msg))
     {
         throw std::invalid_argument("a message was posted under a name that holds another type");
     }
@@ -271,7 +271,7 @@ bool PublishSubscribeMessage::CopyToMessage(RabitMessage &msg)
 {
     if (&msg != _message.get())
     {
-        if (!msg.CopyMessage(_message.get()) && typeid(msg) != _type)
+        if (!msg.CopyMessage(_message.get()) && IsRefusal(msg, *_message))
         {
             return false;
         }

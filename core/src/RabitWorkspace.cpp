@@ -195,8 +195,9 @@ MessageRegistration RabitWorkspace::RegisterMessageFor(const std::string &name,
             RabitLog::Write(RabitLogLevel::Error,
                             "message \"" + name + "\" is of type " +
                                 boost::core::demangle(registration.Global->MsgTypeIndex().name()) +
-                                ": a message of type " + boost::core::demangle(msg->GetTypeIndex().name()) +
-                                " was not attached to it");
+                                ": a message of another type, " +
+                                boost::core::demangle(msg->GetTypeIndex().name()) +
+                                ", was not attached to it");
             break;
     }
     return registration;

@@ -1,5 +1,7 @@
 #include "WorkspaceRegistry.h"
 
+#include "MessageTypes.h"
+
 #include <rabit/RabitWakeup.h>
 
 #include <algorithm>
@@ -148,29 +150,37 @@ MessageRegistration WorkspaceRegistry::AddMessage(const std::string &name,
         throw std::invalid_argument("a null message cannot be registered as \"" + name + "\"");
     }
     std::unique_lock<std::mutex> lock(_mutex);
-    auto found = _messages.find(name);
-    if (found == _messages.end())
+    for (;;)
     {
-        if (!global)
+        auto found = _messages.find(name);
+        // Cloning and comparing run the user's code: not under the lock.
+        if (found == _messages.end() && !global)
         {
-            // Cloning runs the user's code: not under the lock.
             lock.unlock();
             global = std::make_shared<PublishSubscribeMessage>(msg->Clone(), _clock);
             lock.lock();
+            found = _messages.find(name);
         }
-        const auto inserted = _messages.emplace(name, MessageEntry{global, msg, {owner}});
-        if (inserted.second)
+        if (found == _messages.end())
         {
+            _messages.emplace(name, MessageEntry{global, msg, {owner}});
             return {MessageRegistrationResult::Created, std::move(global)};
         }
-        found = inserted.first;  // another thread was quicker
+        const std::shared_ptr<PublishSubscribeMessage> known = found->second.Global;
+        lock.unlock();
+        const bool isSame = IsSameType(*known, *msg);
+        lock.lock();
+        if (!isSame)
+        {
+            return {MessageRegistrationResult::OtherType, known};
+        }
+        found = _messages.find(name);
+        if (found != _messages.end() && found->second.Global == known)
+        {
+            found->second.OwnedBy.insert(owner);
+            return {MessageRegistrationResult::Attached, known};
+        }
     }
-    if (found->second.Global->MsgTypeIndex() != msg->GetTypeIndex())
-    {
-        return {MessageRegistrationResult::OtherType, found->second.Global};
-    }
-    found->second.OwnedBy.insert(owner);
-    return {MessageRegistrationResult::Attached, found->second.Global};
 }
 
 void WorkspaceRegistry::ReleaseMessage(const std::string &name, std::uint64_t owner)

@@ -75,12 +75,9 @@ void ForeignReader::Open(TransportSession &session, Duration now)
     if (!IsQueue())
     {
         const std::shared_ptr<RabitMessage> message = _type.CreateShared();
-        const bool attached = _workspace.AddPublishSubscribeMessage(_rule.Local, message);
-        const auto global = message->GetGlobalPublishSubscribeMessageRef();
-        // Types made at run time share one class: the workspace does not tell them apart.
-        if (attached && _type.IsTypeOf(*global->GetCopyOfMessage()))
+        if (_workspace.AddPublishSubscribeMessage(_rule.Local, message))
         {
-            _global = global;
+            _global = message->GetGlobalPublishSubscribeMessageRef();
         }
         else
         {

@@ -1,5 +1,6 @@
 #include "TestManagers.h"
 #include "TestMessages.h"
+#include "TypedMessages.h"
 
 #include <rabit/GlobalPublishSubscribeException.h>
 #include <rabit/ManualClock.h>
@@ -356,6 +357,24 @@ TEST(PublishSubscribe, AMessageOfAnotherTypeIsNotPosted)
     EXPECT_EQ(global.GetNumberOfPosts(), 0u);
     EXPECT_EQ(other.GetTimeStamp(), stamp);
     EXPECT_FALSE(global.FetchMessage(&other));
+}
+
+TEST(PublishSubscribe, AMessageOfAnotherTypeOfTheSameClassIsNotPosted)
+{
+    PublishSubscribeMessage global(std::make_unique<ManyTypedMessage>("one"));
+    ManyTypedMessage other("other");
+    EXPECT_THROW(global.PostMessage(&other), std::invalid_argument);
+    EXPECT_EQ(global.GetNumberOfPosts(), 0u);
+    EXPECT_FALSE(global.FetchMessage(&other));
+}
+
+TEST(PublishSubscribe, AnOverrideThatReturnsFalseForItsOwnTypeHasCopied)
+{
+    Pair<DenyingMessage> pair;
+    pair.Poster->Number = 3;
+    pair.Poster->PostMessage();
+    EXPECT_TRUE(pair.Reader->FetchMessage());
+    EXPECT_EQ(pair.Reader->Number, 3);
 }
 
 TEST(PublishSubscribe, AnUnregisteredMessageThrows)

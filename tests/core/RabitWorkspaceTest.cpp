@@ -1,5 +1,6 @@
 #include "CapturedLog.h"
 #include "TestMessages.h"
+#include "TypedMessages.h"
 
 #include <rabit/RabitWorkspace.h>
 
@@ -48,6 +49,25 @@ TEST(RabitWorkspaceMessages, AMessageOfAnotherTypeIsLeftUnattachedAndSaidSo)
     EXPECT_FALSE(workspace.AddPublishSubscribeMessage("Name", other));
     EXPECT_EQ(other->GetGlobalPublishSubscribeMessageRef(), nullptr);
     EXPECT_EQ(log.Lines().size(), 1u);
+}
+
+TEST(RabitWorkspaceMessages, AClassOfSeveralTypesIsAttachedToItsOwnTypeAlone)
+{
+    const CapturedLog log;
+    RabitWorkspace workspace;
+    const auto other = std::make_shared<ManyTypedMessage>("other");
+    workspace.AddPublishSubscribeMessage("Name", std::make_shared<ManyTypedMessage>("one"));
+    EXPECT_TRUE(workspace.AddPublishSubscribeMessage("Name", std::make_shared<ManyTypedMessage>("one")));
+    EXPECT_FALSE(workspace.AddPublishSubscribeMessage("Name", other));
+    EXPECT_EQ(other->GetGlobalPublishSubscribeMessageRef(), nullptr);
+    EXPECT_EQ(log.Lines().size(), 1u);
+}
+
+TEST(RabitWorkspaceMessages, AnOverrideThatReturnsFalseForItsOwnTypeIsAttached)
+{
+    RabitWorkspace workspace;
+    workspace.AddPublishSubscribeMessage("Name", std::make_shared<DenyingMessage>());
+    EXPECT_TRUE(workspace.AddPublishSubscribeMessage("Name", std::make_shared<DenyingMessage>()));
 }
 
 TEST(RabitWorkspaceMessages, RegisteringTellsWhatHappened)

@@ -15,6 +15,7 @@ namespace
 {
 
 using namespace std::chrono_literals;
+using ::testing::HasSubstr;
 
 constexpr const char *Text = R"(module Late {
 enum Kind { WALKED, SWAM };
@@ -67,6 +68,22 @@ TEST_F(DynamicTypeTest, IsPublishedAndMirrored)
     posted->PostMessage();
     ASSERT_TRUE(fleet.RunUntil([&] { return mirrored->FetchMessage(); }, 1s));
     EXPECT_EQ(mirrored->ToJson(), R"({"id":7,"kind":"SWAM","points":[1.5,-2]})");
+}
+
+TEST_F(DynamicTypeTest, IsReportedAndSendsNothingIfTheProgramHasAnotherUnderTheName)
+{
+    SimulatedNode &uav = fleet.Add(Sender());
+    SimulatedNode &ground = fleet.Add(Receiver());
+    auto posted = std::make_shared<DynamicMessage>(order);
+    auto mirrored = std::make_shared<DynamicMessage>(track);
+    ASSERT_TRUE(uav.Workspace.AddPublishSubscribeMessage("Track", posted));
+    ASSERT_TRUE(ground.Workspace.AddPublishSubscribeMessage("uav1/Track", mirrored));
+    fleet.RunFor(3s);
+    posted->PostMessage();
+    fleet.RunFor(1s);
+    EXPECT_FALSE(mirrored->FetchMessage());
+    EXPECT_THAT(uav.Problems(),
+                HasSubstr("publish Track: the local message `Track` is of another type than `Late::Track`"));
 }
 
 TEST_F(DynamicTypeTest, IsSentToAQueue)

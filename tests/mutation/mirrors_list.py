@@ -102,5 +102,5 @@ MUTATIONS = [
     subscriber("another life's State was taken in", "found->second->Taken->Incarnation != incarnation", "false"),
     subscriber("an announcement is never taken back", "source->second->Offer = profile;",
                "source->second->Offer = profile ? profile : source->second->Offer;"),
-    subscriber("types made at run time are one", "global && _type.IsTypeOf(*global->GetCopyOfMessage())", "global != nullptr"),
+    subscriber("a local message of another type is taken", "source.Local->Global() != nullptr", "true"),
 ]
