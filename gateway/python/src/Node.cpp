@@ -4,7 +4,7 @@
 #include <rabit/backfill/BackfillManager.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
-#include <rabit/idl/NearestWord.h>
+#include <rabit/idl/MessageTypeRegistry.h>
 #include <rabit/recording/RecorderManager.h>
 #include <rabit/transport/TransportFactory.h>
 
@@ -26,6 +26,20 @@ namespace Rabit::Python
 Node::Node(GatewayConfig config)
     : _config(std::move(config)), _process(getpid()), _parts(std::make_shared<Parts>())
 {
+    // The names have their types from now on: other uses of them are refused where the program makes them.
+    const auto add = [this](const std::string &name, const std::string &type)
+    { _parts->Workspace.AddPublishSubscribeMessage(name, MessageTypeRegistry::Find(type)->CreateShared()); };
+    for (const PublishRule &rule : _config.Publish)
+    {
+        add(rule.Message, rule.Type);
+    }
+    for (const ForeignRule &rule : _config.Foreign)
+    {
+        if (rule.Each != ForeignRule::Delivery::Queue)
+        {
+            add(rule.Local, rule.Type);
+        }
+    }
 }
 
 Node::~Node()
@@ -377,11 +391,8 @@ void Node::Post(const std::string &name, py::handle value)
     auto &[known, message] = parts.Posted[name];
     if (!message)
     {
-        const auto rule = std::find_if(_config.Publish.begin(), _config.Publish.end(),
-                                       [&name](const PublishRule &one) { return one.Message == name; });
         auto made = type->Registered->CreateShared();
-        if ((rule != _config.Publish.end() && rule->Type != type->Name()) ||
-            !parts.Workspace.AddPublishSubscribeMessage(name, made))
+        if (!parts.Workspace.AddPublishSubscribeMessage(name, made))
         {
             parts.Posted.erase(name);
             throw py::type_error("post " + name + ": the message is of another type than " + type->Name());

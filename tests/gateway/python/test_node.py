@@ -61,6 +61,28 @@ def test_wrong_use_names_what_is_wrong(idl, one_network):
         node.post("Pose", idl.Uav.Pose())
 
 
+class WakesOnPose(rabit.Manager):
+    def __init__(self, cls):
+        self.wake_on = {"Pose": cls}
+
+
+def test_a_name_has_one_type(idl, one_network):
+    another = "the local message `Pose` is of another type than Uav::Goto"
+    with pytest.raises(TypeError, match=another):
+        rabit.Node("planner", publish={"Pose": idl.Uav.Pose}, managers=[WakesOnPose(idl.Uav.Goto)], **one_network)
+    foreign = [{"publish": "Pose", "topic": "pose", "type": idl.Uav.Pose}]
+    with pytest.raises(TypeError, match=another):
+        rabit.Node("planner", foreign=foreign, managers=[WakesOnPose(idl.Uav.Goto)], **one_network)
+    with rabit.Node("planner", managers=[WakesOnPose(idl.Uav.Pose)], **one_network) as node:
+        with pytest.raises(TypeError, match="post Pose: the message is of another type than Uav::Goto"):
+            node.post("Pose", idl.Uav.Goto())
+        with pytest.raises(TypeError, match=another):
+            node.subscribe("Pose", idl.Uav.Goto)
+        poses = node.subscribe("Pose", idl.Uav.Pose)
+        node.post("Pose", idl.Uav.Pose(number=1))
+        assert poses.get(timeout=5).value.number == 1
+
+
 def test_a_slow_reader_gets_the_newest_value(idl, one_network):
     with rabit.Node("planner", **one_network) as node:
         poses = node.subscribe("Pose", idl.Uav.Pose)
@@ -70,6 +92,30 @@ def test_a_slow_reader_gets_the_newest_value(idl, one_network):
         assert poses.latest()[""].value.number == 100
         with pytest.raises(TimeoutError):
             poses.get(timeout=0.05)
+
+
+def test_a_slow_handler_gets_the_newest_value(idl, one_network):
+    begun, may_end, seen = threading.Event(), threading.Event(), []
+    with rabit.Node("planner", **one_network) as node:
+
+        @node.subscribe("Pose", idl.Uav.Pose).on
+        def handle(pose):
+            seen.append(pose.value.number)
+            begun.set()
+            assert may_end.wait(30)
+
+        node.post("Pose", idl.Uav.Pose(number=1))
+        assert begun.wait(30)
+        for number in range(2, 101):
+            node.post("Pose", idl.Uav.Pose(number=number))
+        may_end.set()
+        wait_until(lambda: seen[-1] == 100)
+        assert seen == [1, 100]
+
+
+def test_the_budget_of_a_radio_is_in_the_fleet(one_network):
+    with rabit.Node("uav1", radio={"budget": "5kB/s"}, **one_network) as node:
+        wait_until(lambda: node.fleet().value.air.budget == 5000)
 
 
 def test_a_second_subscription_of_a_message_adds_its_nodes(idl, one_network):
