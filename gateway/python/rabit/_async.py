@@ -19,8 +19,8 @@ def in_thread(call: Callable[[], None]) -> asyncio.Future[None]:
 
 
 class _Waiters:
-    """Futures of one event loop, which reads the file descriptor while there are any, and no longer: a loop keeps alive
-    what it reads for."""
+    """Futures of one event loop, which reads the file descriptor while there are any, and one turn longer: mostly the next
+    wait begins in that turn. No longer: a loop keeps alive what it reads for."""
 
     def __init__(self, fd: Callable[[], int], on_ready: Callable[[], None]) -> None:
         self._fd = fd  # made when it is first asked for
@@ -32,9 +32,9 @@ class _Waiters:
     def one_more(self) -> Iterator[asyncio.Future[None]]:
         loop = asyncio.get_running_loop()
         if self._loop is not loop:
-            if self._loop is not None and not self._loop.is_closed():
+            if self._loop is not None and self.futures and not self._loop.is_closed():
                 raise RuntimeError("another event loop waits here already")
-            loop.add_reader(self._fd(), self._on_ready)
+            loop.add_reader(self._fd(), self._read, loop)
             self._loop = loop
             self.futures = set()
         future: asyncio.Future[None] = loop.create_future()
@@ -43,10 +43,19 @@ class _Waiters:
             yield future
         finally:
             self.futures.discard(future)
-            if not self.futures and self._loop is loop:
-                self._loop = None
-                if not loop.is_closed():
-                    loop.remove_reader(self._fd())
+            if not self.futures and not loop.is_closed():
+                loop.call_soon(self._leave, loop)
+
+    def _read(self, loop: asyncio.AbstractEventLoop) -> None:
+        if self._loop is loop:
+            self._on_ready()
+
+    def _leave(self, loop: asyncio.AbstractEventLoop) -> None:
+        if self._loop is loop:
+            if self.futures:
+                return
+            self._loop = None
+        loop.remove_reader(self._fd())
 
 
 def _finish(futures: set[asyncio.Future[None]]) -> None:

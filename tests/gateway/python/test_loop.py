@@ -112,6 +112,23 @@ def test_an_event_loop_keeps_no_stream_that_was_dropped(idl, one_network):
     asyncio.run(main())
 
 
+def test_a_stream_is_awaited_in_one_event_loop_after_the_other(idl, one_network):
+    loops = asyncio.new_event_loop(), asyncio.new_event_loop()
+    with rabit.Node("planner", **one_network) as node:
+        poses = node.subscribe("Pose", idl.Uav.Pose)
+
+        async def next_of(number):
+            waiting = asyncio.ensure_future(anext(poses))
+            await asyncio.sleep(0)
+            node.post("Pose", idl.Uav.Pose(number=number))
+            return (await asyncio.wait_for(waiting, 30)).value.number
+
+        for number in range(1, 7):
+            assert loops[number % 2].run_until_complete(next_of(number)) == number
+    for loop in loops:
+        loop.close()
+
+
 def test_a_node_ends_while_all_threads_of_the_loop_wait_for_it(idl, one_network):
     async def main():
         async with rabit.Node("planner", **one_network) as node:
