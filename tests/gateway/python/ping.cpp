@@ -1,11 +1,12 @@
-// A library with a type that was generated in C++, and a manager, for nodes of Python: what the same reader
-// costs in C++.
+// A library with a type that was generated in C++, and managers, for nodes of Python: what the same reader
+// costs in C++, and a source of the messages.
 #include <rabit/RabitManager.h>
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayConfig.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <fstream>
 #include <memory>
@@ -15,6 +16,31 @@
 
 namespace
 {
+
+std::chrono::nanoseconds Now()
+{
+    return std::chrono::steady_clock::now().time_since_epoch();
+}
+
+// Posts 1000 pings a second.
+class PingSource final : public Rabit::RabitManager
+{
+public:
+    explicit PingSource(Rabit::RabitWorkspace &workspace) : RabitManager("PingSource", workspace)
+    {
+        AddPublishSubscribeMessage("Ping", _ping);
+        SetPeriodSec(0.001);
+    }
+
+    void ExecuteUnitOfWork() final
+    {
+        _ping->sent_ns = static_cast<std::uint64_t>(Now().count());
+        _ping->PostMessage();
+    }
+
+private:
+    const std::shared_ptr<PythonBench::Ping> _ping = std::make_shared<PythonBench::Ping>();
+};
 
 // Notes how late each ping comes. At its end it writes the number of pings and the median in microseconds to
 // the file that PING_RESULT names.
@@ -31,8 +57,7 @@ public:
     {
         if (_ping->FetchMessage())
         {
-            const auto now = std::chrono::steady_clock::now().time_since_epoch();
-            _late.push_back(std::chrono::duration<double, std::micro>(now).count() -
+            _late.push_back(std::chrono::duration<double, std::micro>(Now()).count() -
                             1e-3 * static_cast<double>(_ping->sent_ns));
         }
     }
@@ -54,9 +79,17 @@ private:
 
 }  // namespace
 
+// The node `source` gets the source, others get a reader.
 extern "C" __attribute__((visibility("default"))) void rabit_add_managers(Rabit::RabitReactor &reactor,
-                                                                          Rabit::GatewayConfig & /*config*/,
+                                                                          Rabit::GatewayConfig &config,
                                                                           Rabit::RabitWorkspace &workspace)
 {
-    reactor.AddManager(std::make_unique<PingReader>(workspace));
+    if (config.Node == "source")
+    {
+        reactor.AddManager(std::make_unique<PingSource>(workspace));
+    }
+    else
+    {
+        reactor.AddManager(std::make_unique<PingReader>(workspace));
+    }
 }

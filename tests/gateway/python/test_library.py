@@ -39,13 +39,34 @@ def test_a_manager_of_cpp_reads_what_python_posts_in_a_type_of_cpp(tmp_path, mon
     assert int(result.read_text().split()[0]) > 10
 
 
-def measure(kind, domain, seconds):
-    """One reader: prints how many came, their median in microseconds, and the share of a core, in percent."""
+class Counts(rabit.Manager):
+    def __init__(self, ping):
+        self.wake_on = {"Ping": ping}
+        self.turns = 0
+
+    def unit_of_work(self):
+        self.turns += 1
+
+
+def test_a_manager_of_python_is_woken_by_one_of_cpp_in_its_reactor(one_network):
+    rabit.load_library(LIBRARY)
+    ping = rabit.message_class("PythonBench::Ping")
+    counts = Counts(ping)
+    with rabit.Node("source", publish=PING, managers=[counts], libraries=[LIBRARY], **one_network) as node:
+        pings = node.subscribe("Ping", ping)
+        first, second = pings.get(timeout=30), pings.get(timeout=30)
+        assert 0 < first.value.sent_ns < second.value.sent_ns
+        while counts.turns <= 10:
+            pings.get(timeout=30)
+
+
+def measure(kind, seconds):
+    """One reader: prints how many came in a second, how late, and what of a core its process took."""
     rabit.load_library(LIBRARY)
     ping = rabit.message_class("PythonBench::Ping")
     late = []
     libraries = [LIBRARY] if kind == "cpp" else []
-    node = rabit.Node(f"reader.{kind}", libraries=libraries, **settings(domain),
+    node = rabit.Node(f"reader.{kind}", libraries=libraries, **settings(7),
                       subscribe=[{"message": "Ping", "type": ping, "from": ["source"]}])
     with node:
         pings = node.subscribe("source/Ping", ping) if kind != "cpp" else None
@@ -82,37 +103,31 @@ def measure(kind, domain, seconds):
     used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     if kind == "cpp":
         count, median = open(os.environ["PING_RESULT"]).read().split()
-        print(kind, count, median, 100 * used / seconds)
+        rate = int(count) / (seconds + 3)
     else:
-        print(kind, len(late), statistics.median(late) / 1000, 100 * used / seconds)
-
-
-class Source(rabit.Manager):
-    period = 0.001
-
-    def __init__(self, ping):
-        self.ping = ping(fill=bytes(88))
-
-    def unit_of_work(self):
-        self.ping.sent_ns = time.monotonic_ns()
-        self.post("Ping", self.ping)
+        rate, median = len(late) / seconds, statistics.median(late) / 1000
+    print(f"{os.environ['RABIT_TRANSPORT']:12} {kind:6} {rate:5.0f} messages/s  median {float(median) / 1000:.3f} ms  "
+          f"{100 * used / seconds:4.1f} % of a core", flush=True)
 
 
 def main(seconds):
+    import conftest  # noqa: F401 - a loopback of its own, for the readers, too
+
     rabit.load_library(LIBRARY)
-    ping = rabit.message_class("PythonBench::Ping")
-    domain = 99
-    with rabit.Node("source", publish=PING, managers=[Source(ping)], **settings(domain)):
-        with tempfile.NamedTemporaryFile() as result:
-            readers = [subprocess.Popen([sys.executable, __file__, kind, str(domain), str(seconds)],
-                                        env={**os.environ, "PING_RESULT": result.name})
-                       for kind in ("cpp", "thread", "loop")]
-            for reader in readers:
-                reader.wait()
+    print(f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.0f}, Python {sys.version.split()[0]}")
+    for transport in rabit.transports():
+        os.environ["RABIT_TRANSPORT"] = transport
+        with rabit.Node("source", publish=PING, libraries=[LIBRARY], **settings(7)):
+            with tempfile.NamedTemporaryFile() as result:
+                readers = [subprocess.Popen([sys.executable, __file__, kind, str(seconds)],
+                                            env={**os.environ, "PING_RESULT": result.name})
+                           for kind in ("cpp", "thread", "loop")]
+                for reader in readers:
+                    reader.wait()
 
 
 if __name__ == "__main__":
     if len(sys.argv) == 2:
         main(float(sys.argv[1]))
     else:
-        measure(sys.argv[1], int(sys.argv[2]), float(sys.argv[3]))
+        measure(sys.argv[1], float(sys.argv[2]))
