@@ -103,10 +103,10 @@ def test_the_mission_flies_the_swarm_example_and_its_recordings_are_analysed(one
 def test_the_types_are_right():
     pytest.importorskip("mypy")
     config = ROOT / "gateway/python/pyproject.toml"
-    for checked in ("rabit", *sorted(map(str, EXAMPLES.glob("*.py")))):
-        found = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--config-file", config, "--cache-dir",
-                                "/dev/null", checked], cwd=ROOT / "gateway/python", capture_output=True, text=True)
-        assert found.returncode == 0, found.stdout
+    found = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--config-file", config, "--cache-dir", "/dev/null",
+                            "rabit", *sorted(EXAMPLES.glob("*.py"))],
+                           cwd=ROOT / "gateway/python", capture_output=True, text=True)
+    assert found.returncode == 0, found.stdout
 
 
 def test_the_package_is_the_program_rabit(tmp_path):
