@@ -9,11 +9,9 @@
 namespace Rabit
 {
 
-// More bytes of an RTPS message than IsOfSamples inspects, where the vendors put them.
-inline constexpr std::size_t RtpsHeadSize = 128;
-
 // True if a message of our own carries samples of a topic or their repair; false if it is discovery. The
-// first submessage that names a writer decides. `head` is the beginning of the message.
+// first submessage that names a writer decides. `head` is the beginning of the message: 128 bytes are more
+// than this function inspects, where the vendors put them.
 bool IsOfSamples(std::span<const std::uint8_t> head);
 
 // Tells whether a whole message announces a participant (Any), and says nothing else (Alone). A goodbye is no

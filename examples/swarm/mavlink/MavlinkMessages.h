@@ -24,7 +24,6 @@ struct MavlinkHeartbeat
     static constexpr std::uint8_t TypeOnboardController = 18;  // MAV_TYPE_ONBOARD_CONTROLLER
     static constexpr std::uint8_t AutopilotInvalid = 8;        // MAV_AUTOPILOT_INVALID: not an autopilot
     static constexpr std::uint8_t StatusActive = 4;            // MAV_STATE_ACTIVE
-    static constexpr std::uint8_t ModeArmed = 128;             // flag of BaseMode
 
     std::uint32_t CustomMode = 0;
     std::uint8_t Type = 0;

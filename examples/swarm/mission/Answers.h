@@ -21,7 +21,6 @@ public:
     using Time = std::chrono::nanoseconds;  // of any clock that does not go back
     using Sender = std::function<bool(const std::string &to, const std::shared_ptr<Uav::CommandAck> &ack)>;
 
-    static constexpr std::chrono::milliseconds RetryPeriod{200};
     static constexpr std::chrono::seconds Keep{30};
     static constexpr std::size_t MaxKept = 1000;
 
@@ -29,7 +28,6 @@ public:
     void Add(const std::string &to, const Uav::CommandAck &ack, Time now);
     // Tries to send all answers, in order.
     void Send(Time now, const Sender &sender);
-    bool AnyWait() const { return !_waiting.empty(); }
     // The numbers of waiting and abandoned answers, as text; empty if there are none.
     std::string Text() const;
 

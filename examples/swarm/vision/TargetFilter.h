@@ -48,8 +48,6 @@ public:
     void Update(const Place &measured, double sigmaM, double timeS);
     // Takes over the evidence of an earlier filter of the same target.
     void Inherit(const TargetFilter &before);
-    double UpdatedS() const { return _timeS; }
-    double StandsProbability() const { return _stand.Probability(); }
 
 private:
     // The expected detection of a walking target at that time, and its relation to the state at the time of

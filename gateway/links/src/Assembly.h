@@ -25,9 +25,6 @@ public:
     Assembly &operator=(const Assembly &) = delete;
 
     bool IsOpen() const { return _open; }
-    // True for a message that is too large, or whose first part is missing: its parts are consumed, and it is
-    // refused.
-    bool IsRefused() const { return _refused; }
 
     void Begin(std::string_view type, std::uint64_t size);
     void BeginRefused();
@@ -51,6 +48,7 @@ private:
 
     AssemblyMemory &_memory;
     bool _open = false;
+    // The message is too large, or its first part is missing: its parts are consumed, and it is refused.
     bool _refused = false;
     std::string _type;
     std::uint64_t _total = 0;

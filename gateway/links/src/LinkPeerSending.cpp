@@ -264,7 +264,6 @@ void LinkPeer::SendHello(LinkTime now)
     _helloGap = std::min(2 * _helloGap, _context.Settings.HelloPeriod);
     const LinkTime step = _silent ? _context.Settings.SilentHelloPeriod : _helloGap;
     _helloAt = wanted ? now + step : LinkNever;
-    ++_context.Counters.HellosSent;
     Send(frame, wanted, now);
 }
 

@@ -156,7 +156,6 @@ void LinkSender::OnProbeTimer()
     else
     {
         _doublings = std::max(_doublings + 1, std::min(_probesInVain, PathControl::ProbesInVain));
-        ++_counters.Timeouts;
         if (_doublings > LongEnoughForStart)
         {
             _path.LeaveStart();

@@ -147,7 +147,6 @@ void LinkSender::OnSent(std::size_t bytes, bool hasParts, bool turnedAway, LinkT
     }
     _probe = false;
     _lastSentAt = now;
-    ++_counters.DatagramsSent;
     _counters.BytesSent += onAir;
     ArmProbe(turnedAway, now);
 }
@@ -346,7 +345,6 @@ void LinkSender::OnPartSent(Filling &filling, SentPart &part, std::size_t bytes)
     filling.Used += bytes;
     _inFlight += part.Cost;
     _path.Sent(part.Cost, filling.Now);
-    ++_counters.PartsSent;
 }
 
 void LinkSender::LeavePath(SentPart &part)

@@ -43,9 +43,6 @@ enum class Opcode : std::uint8_t
     DataEnd = 0x0F
 };
 
-// The range of the opcodes that the format may get later.
-inline constexpr std::uint8_t LastFormatOpcode = 0x7F;
-
 struct Header
 {
     static constexpr Opcode Code = Opcode::Header;
@@ -89,8 +86,6 @@ struct Message
     std::uint64_t PublishTime = 0;  // when it was posted or sent
     ByteView Data;
 };
-// Bytes that a message takes in a chunk beside its data, the head of the record included.
-inline constexpr std::size_t MessageHead = RecordHead + 22;
 
 struct Chunk
 {

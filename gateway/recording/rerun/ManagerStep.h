@@ -39,8 +39,6 @@ struct StepEvent
     // Empty: the sample could not be encoded, or it is the post that was fetched before.
     std::vector<std::uint8_t> Sample{};
     std::vector<std::pair<std::string, std::string>> Names{};  // with their types
-
-    bool IsOutput() const { return What == Kind::Posted || What == Kind::Added || What == Kind::Refused; }
 };
 
 // One Startup, unit of work or Shutdown of a manager, and all that it read and did.

@@ -20,7 +20,7 @@
 
 enum
 {
-    HeadSize = 128, /* RtpsHeadSize */
+    HeadSize = 128, /* more than IsOfSamples (common/RtpsTraffic.h) inspects */
     MostOfDiscovery = 4096,
     AddressAt = 12, /* an IPv4 address is the last four of sixteen bytes */
     MostTargets = 4,

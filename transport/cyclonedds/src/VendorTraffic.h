@@ -35,7 +35,7 @@ extern "C"
         bool group;
     };
 
-    /* Calls made for each datagram, on any thread. A head is its beginning, up to RtpsHeadSize bytes. */
+    /* Calls made for each datagram, on any thread. A head is its beginning, up to 128 bytes. */
     struct RabitCycloneCalls
     {
         void *argument;

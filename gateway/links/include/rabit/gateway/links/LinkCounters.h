@@ -20,11 +20,8 @@ struct LinkSenderCounters
     std::uint64_t Expired = 0;
     std::uint64_t InDoubt = 0;
     std::uint64_t RefusedThere = 0;
-    std::uint64_t PartsSent = 0;  // in datagrams, resent ones included
     std::uint64_t PartsResent = 0;
-    std::uint64_t DatagramsSent = 0;
-    std::uint64_t BytesSent = 0;  // in these, as on the air
-    std::uint64_t Timeouts = 0;   // times the probe timer ran out with something unacknowledged
+    std::uint64_t BytesSent = 0;  // as on the air
     std::uint64_t Restarts = 0;   // times the stream was started anew (receiver's or own new incarnation)
     // Present state.
     std::size_t Pending = 0;         // messages without an outcome
@@ -78,7 +75,6 @@ struct LinkNodeCounters
     std::uint64_t RaisesPutOff = 0;  // messages of a higher one within LinkSettings::RaiseGap, ignored
     std::uint64_t Forgotten = 0;     // peers forgotten, with their links
     std::uint64_t PeerRestarts = 0;  // peers seen with a new incarnation
-    std::uint64_t HellosSent = 0;
 };
 
 }  // namespace Rabit
