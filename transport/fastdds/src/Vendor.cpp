@@ -1,6 +1,6 @@
 #include "Vendor.h"
 
-#if __has_include(<fastdds/config.hpp>)
+#if RABIT_FASTDDS_MAJOR >= 3
 
 #include <fastdds/LibrarySettings.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
@@ -44,7 +44,7 @@ public:
 namespace Rabit::FastDds
 {
 
-#if __has_include(<fastdds/config.hpp>)
+#if RABIT_FASTDDS_MAJOR >= 3
 
 std::optional<rtps::RTPSParticipantAttributes> LoadProfile(const std::string &file)
 {

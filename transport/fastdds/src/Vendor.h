@@ -10,7 +10,7 @@
 // All other files are the same for both versions.
 #pragma once
 
-#if __has_include(<fastdds/config.hpp>)
+#if RABIT_FASTDDS_MAJOR >= 3
 #include <fastdds/dds/publisher/qos/WriterQos.hpp>
 #include <fastdds/dds/subscriber/qos/ReaderQos.hpp>
 #include <fastdds/rtps/RTPSDomain.hpp>
@@ -109,6 +109,7 @@ using RecursiveTimedMutex = eprosima::fastrtps::RecursiveTimedMutex;
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -187,8 +188,33 @@ rtps::RTPSWriter *FindWriter(const rtps::GUID_t &guid);
 
 }  // namespace Rabit::FastDds
 
-#if __has_include(<fastdds/config.hpp>)
+#if RABIT_FASTDDS_MAJOR >= 3
 #include "Vendor3.h"
 #else
 #include "Vendor2.h"
 #endif
+
+namespace Rabit::FastDds
+{
+
+inline void SetPace(rtps::WriterAttributes &attributes, const WriterPace &pace)
+{
+    TimesOf(attributes) = std::tuple(Milliseconds(pace.HeartbeatMs), Milliseconds(pace.FirstHeartbeatMs),
+                                     Milliseconds(pace.NackResponseMs), Duration{0, 0});
+}
+
+inline void SetPace(rtps::ReaderAttributes &attributes, const ReaderPace &pace)
+{
+    TimesOf(attributes) =
+        std::tuple(Milliseconds(pace.HeartbeatResponseMs), Milliseconds(pace.FirstAcknowledgementMs));
+}
+
+// Sets how soon a reliable writer repeats heartbeats, and its other times to the vendor's defaults.
+inline void SetHeartbeatPeriod(rtps::RTPSWriter &writer, const Duration &period)
+{
+    rtps::WriterAttributes attributes;
+    std::get<0>(TimesOf(attributes)) = period;
+    Update(writer, attributes);
+}
+
+}  // namespace Rabit::FastDds

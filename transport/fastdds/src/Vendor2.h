@@ -190,25 +190,22 @@ protected:
 
 inline void AddProperties(rtps::PropertyPolicy & /*properties*/) {}
 
-inline void SetPace(rtps::WriterAttributes &attributes, const WriterPace &pace)
+// The heartbeat period, the first heartbeat's delay, and the delays of repair.
+inline auto TimesOf(rtps::WriterAttributes &attributes)
 {
-    attributes.times.heartbeatPeriod = Milliseconds(pace.HeartbeatMs);
-    attributes.times.initialHeartbeatDelay = Milliseconds(pace.FirstHeartbeatMs);
-    attributes.times.nackResponseDelay = Milliseconds(pace.NackResponseMs);
-    attributes.times.nackSupressionDuration = {0, 0};
+    auto &times = attributes.times;
+    return std::tie(times.heartbeatPeriod, times.initialHeartbeatDelay, times.nackResponseDelay,
+                    times.nackSupressionDuration);
 }
 
-inline void SetPace(rtps::ReaderAttributes &attributes, const ReaderPace &pace)
+// The delays of an answer to a heartbeat, and of the first acknowledgement.
+inline auto TimesOf(rtps::ReaderAttributes &attributes)
 {
-    attributes.times.heartbeatResponseDelay = Milliseconds(pace.HeartbeatResponseMs);
-    attributes.times.initialAcknackDelay = Milliseconds(pace.FirstAcknowledgementMs);
+    return std::tie(attributes.times.heartbeatResponseDelay, attributes.times.initialAcknackDelay);
 }
 
-// Sets how soon a reliable writer repeats heartbeats, and its other times to the vendor's defaults.
-inline void SetHeartbeatPeriod(rtps::RTPSWriter &writer, const Duration &period)
+inline void Update(rtps::RTPSWriter &writer, const rtps::WriterAttributes &attributes)
 {
-    rtps::WriterAttributes attributes;
-    attributes.times.heartbeatPeriod = period;
     writer.updateAttributes(attributes);
 }
 

@@ -294,25 +294,22 @@ inline void AddProperties(rtps::PropertyPolicy &properties)
     }
 }
 
-inline void SetPace(rtps::WriterAttributes &attributes, const WriterPace &pace)
+// The heartbeat period, the first heartbeat's delay, and the delays of repair.
+inline auto TimesOf(rtps::WriterAttributes &attributes)
 {
-    attributes.times.heartbeat_period = Milliseconds(pace.HeartbeatMs);
-    attributes.times.initial_heartbeat_delay = Milliseconds(pace.FirstHeartbeatMs);
-    attributes.times.nack_response_delay = Milliseconds(pace.NackResponseMs);
-    attributes.times.nack_supression_duration = {0, 0};
+    auto &times = attributes.times;
+    return std::tie(times.heartbeat_period, times.initial_heartbeat_delay, times.nack_response_delay,
+                    times.nack_supression_duration);
 }
 
-inline void SetPace(rtps::ReaderAttributes &attributes, const ReaderPace &pace)
+// The delays of an answer to a heartbeat, and of the first acknowledgement.
+inline auto TimesOf(rtps::ReaderAttributes &attributes)
 {
-    attributes.times.heartbeat_response_delay = Milliseconds(pace.HeartbeatResponseMs);
-    attributes.times.initial_acknack_delay = Milliseconds(pace.FirstAcknowledgementMs);
+    return std::tie(attributes.times.heartbeat_response_delay, attributes.times.initial_acknack_delay);
 }
 
-// Sets how soon a reliable writer repeats heartbeats, and its other times to the vendor's defaults.
-inline void SetHeartbeatPeriod(rtps::RTPSWriter &writer, const Duration &period)
+inline void Update(rtps::RTPSWriter &writer, const rtps::WriterAttributes &attributes)
 {
-    rtps::WriterAttributes attributes;
-    attributes.times.heartbeat_period = period;
     writer.update_attributes(attributes);
 }
 
