@@ -146,15 +146,15 @@ protected:
         return static_cast<double>(old) / static_cast<double>(ages.size());
     }
 
-    // The ground station sends a command each 20 ms.
-    void Command(Duration duration)
+    // The ground station sends a command each period.
+    void Command(Duration duration, Duration period = CommandPeriod)
     {
-        for (Duration run = 0s; run < duration; run += CommandPeriod)
+        for (Duration run = 0s; run < duration; run += period)
         {
             auto command = std::make_shared<Uav::Goto>();
             command->id = static_cast<std::uint32_t>(++sent);
             EXPECT_TRUE(processes["ground"]->Workspace.AddMessageToQueue("uav1/MissionControl", command));
-            RunFor(CommandPeriod);
+            RunFor(period);
         }
     }
 
@@ -412,6 +412,25 @@ TEST_F(PathsTest, TheBudgetOfTheModemHoldsWhileItCarriesEverything)
     }
     EXPECT_LE(worst, static_cast<std::uint64_t>(budget * 1.05));
     EXPECT_EQ(StateAtGround(), "UP");
+}
+
+// The aircraft's poses alone could fill the budget.
+TEST_F(PathsTest, CopiesOfTelemetryLeaveRoomOnASmallModemForCopiesOfCommands)
+{
+    constexpr Duration period = 200ms;
+    AddBoth(1500);
+    RunFor(10s);
+    Command(2s, period);
+    for (int i = 0; i < 10; ++i)
+    {
+        Cut(mesh, true);
+        Command(1s, period);
+        Cut(mesh, false);
+        Command(20s, period);
+    }
+    RunFor(5s);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(longestGap, period + 400ms);
 }
 
 TEST_F(PathsTest, AStateThatIsLostWhileTheEndsChoseDifferentPathsComes)
