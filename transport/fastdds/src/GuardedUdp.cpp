@@ -12,6 +12,7 @@
 #include "AcknowledgementTranslator.h"
 #include "AnnouncementPace.h"
 #include "HeartbeatPace.h"
+#include "Introductions.h"
 #include "KeyAddressees.h"
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
@@ -260,7 +261,7 @@ public:
                 return;
             }
             NoteAcknowledgements(admitted);
-            next->OnDataReceived(admitted.data(), static_cast<std::uint32_t>(admitted.size()), local, remote);
+            Deliver({next, local, remote}, admitted);
         };
         if (!_guard.Admit(datagram, HostOf(remote), std::chrono::steady_clock::now(), std::cref(handOn)))
         {
@@ -269,6 +270,10 @@ public:
         if (_guard.TakeReplyDue())
         {
             _descriptor.Chosen().Announce();
+        }
+        if (AwaitsProtectedAnnouncements && Authentication() != nullptr)
+        {
+            Introduce(datagram, {next, local, remote});
         }
     }
 
@@ -301,8 +306,49 @@ private:
         auto theirs = GoodbyeOf(peer, own, number);
         if (const Receiver receiver = LastReceiver(); receiver.Next != nullptr)
         {
-            HandOn(receiver, theirs);
+            HandOnAsProtected(receiver, peer, theirs);
         }
+    }
+    // Hands a received datagram to the vendor.
+    void Deliver(const Receiver &receiver, std::span<std::uint8_t> admitted)
+    {
+        if (AwaitsProtectedAnnouncements && Authentication() != nullptr &&
+            _introductions.Read(admitted) == Introductions::Message::Goodbye)
+        {
+            HandOnAsProtected(receiver, SenderOf(admitted), admitted);
+            return;
+        }
+        HandOn(receiver, admitted);
+    }
+    // Hands the announcement of a datagram's sender to the vendor once more, if the sender is authenticated.
+    // The vendor has seen the datagram.
+    void Introduce(std::span<const std::uint8_t> datagram, const Receiver &receiver)
+    {
+        const GuidPrefix peer = datagram.size() < RtpsHeaderSize ? GuidPrefix{} : SenderOf(datagram);
+        if (!_introductions.Has(peer))
+        {
+            return;
+        }
+        const auto own = OwnAnnouncement();
+        if (own.empty() || !KeyAddressees::IsAuthenticated(SenderOf(own), peer))
+        {
+            return;
+        }
+        if (auto announcement = _introductions.Take(peer); !announcement.empty())
+        {
+            HandOnAsProtected(receiver, peer, announcement);
+        }
+    }
+    void HandOnAsProtected(const Receiver &receiver, const GuidPrefix &peer, std::span<std::uint8_t> message)
+    {
+        const auto own = OwnAnnouncement();
+        if (own.empty())
+        {
+            HandOn(receiver, message);
+            return;
+        }
+        const std::lock_guard lock(_protecting);
+        AsProtected(SenderOf(own), peer, [&] { HandOn(receiver, message); });
     }
     KeyThread *Keys() const { return _descriptor.Chosen().Keys.get(); }
     // Notes the address of a participant to which the vendor sends. Requires _sending.
@@ -513,6 +559,8 @@ private:
     std::mutex _receiving;                  // several sockets receive at the same time
     AcknowledgementTranslator _translator;  // guarded by _receiving
     Receiver _receiver;                     // guarded by _receiving
+    Introductions _introductions;           // empty if the vendor does not need them
+    std::mutex _protecting;                 // for AsProtected
     std::mutex _sending;                    // guards the members below
     AnnouncementPace _announcements;
     RequestPace _requests;

@@ -2,34 +2,45 @@
 
 #include <algorithm>
 #include <mutex>
+#include <utility>
 
 namespace Rabit::FastDds
 {
 
-bool KeyAddressees::HasKeysOf(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer)
+namespace
 {
-    // OMG DDS Security 1.1, 7.4.5: SEDPbuiltinPublicationsSecureWriter and its reader. The vendor matches
-    // them when it has the keys of both.
-    constexpr rtps::octet secureWriter[] = {0xff, 0x00, 0x03, 0xc2};
-    constexpr rtps::octet secureReader[] = {0xff, 0x00, 0x03, 0xc7};
-    rtps::GUID_t writer;
-    rtps::GUID_t reader;
-    std::copy(own.begin(), own.end(), writer.guidPrefix.value);
-    std::copy(peer.begin(), peer.end(), reader.guidPrefix.value);
-    std::copy(std::begin(secureWriter), std::end(secureWriter), writer.entityId.value);
-    std::copy(std::begin(secureReader), std::end(secureReader), reader.entityId.value);
+
+// OMG DDS Security 1.1, 7.4.5
+constexpr Rtps::EntityId KeyWriter = 0xff0202c3;  // BuiltinParticipantVolatileMessageSecureWriter
+constexpr Rtps::EntityId KeyReader = 0xff0202c4;
+constexpr Rtps::EntityId SecurePublicationsWriter = 0xff0003c2;  // SEDPbuiltinPublicationsSecureWriter
+constexpr Rtps::EntityId SecurePublicationsReader = 0xff0003c7;
+constexpr Rtps::EntityId SecureSubscriptionsWriter = 0xff0004c2;
+
+bool AreMatched(const rtps::GUID_t &writer, const rtps::GUID_t &reader)
+{
     rtps::RTPSWriter *const found = FindWriter(writer);
     return found != nullptr && found->matched_reader_is_matched(reader);
 }
 
+}  // namespace
+
+bool KeyAddressees::IsAuthenticated(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer)
+{
+    // The vendor matches them at the end of the handshake.
+    return AreMatched(GuidOf(own, KeyWriter), GuidOf(peer, KeyReader));
+}
+
+bool KeyAddressees::HasKeysOf(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer)
+{
+    // The vendor matches them when it has the keys of both.
+    return AreMatched(GuidOf(own, SecurePublicationsWriter), GuidOf(peer, SecurePublicationsReader));
+}
+
 bool KeyAddressees::Heed(const rtps::RTPSParticipant &participant)
 {
-    // OMG DDS Security 1.1, 7.4.5: BuiltinParticipantVolatileMessageSecureWriter
-    constexpr rtps::octet keyWriter[] = {0xff, 0x02, 0x02, 0xc3};
     static KeyAddressees addressees;
-    rtps::GUID_t guid = participant.getGuid();
-    std::copy(std::begin(keyWriter), std::end(keyWriter), guid.entityId.value);
-    rtps::RTPSWriter *const writer = FindWriter(guid);
+    rtps::RTPSWriter *const writer = FindWriter({participant.getGuid().guidPrefix, KeyWriter});
     if (writer == nullptr)
     {
         return false;
@@ -44,22 +55,15 @@ void KeyAddressees::SetPeriods(const rtps::RTPSParticipant &participant, bool is
 {
     const Duration soon{0, 250'000'000};
     const Duration calm{2, 0};
-    struct Writer
+    const std::pair<Rtps::EntityId, Duration> writers[] = {
+        {SecurePublicationsWriter, isSettled ? calm : soon},
+        {SecureSubscriptionsWriter, isSettled ? calm : soon},
+        {KeyWriter, soon}};
+    for (const auto &[entity, period] : writers)
     {
-        rtps::octet Entity[4];
-        Duration Period;
-    };
-    // OMG DDS Security 1.1, 7.4.5: the protected writers of publications and subscriptions, and that of keys.
-    const Writer writers[] = {{{0xff, 0x00, 0x03, 0xc2}, isSettled ? calm : soon},
-                              {{0xff, 0x00, 0x04, 0xc2}, isSettled ? calm : soon},
-                              {{0xff, 0x02, 0x02, 0xc3}, soon}};
-    rtps::GUID_t guid = participant.getGuid();
-    for (const Writer &each : writers)
-    {
-        std::copy(std::begin(each.Entity), std::end(each.Entity), guid.entityId.value);
-        if (rtps::RTPSWriter *const writer = FindWriter(guid))
+        if (rtps::RTPSWriter *const writer = FindWriter({participant.getGuid().guidPrefix, entity}))
         {
-            SetHeartbeatPeriod(*writer, each.Period);
+            SetHeartbeatPeriod(*writer, period);
         }
     }
 }

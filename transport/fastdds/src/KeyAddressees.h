@@ -23,6 +23,8 @@ public:
     // holds back what is too much. The vendor's heartbeat goes to all readers while one is behind, and all
     // answer. So the writers of discovery repeat it after 2 s. Call without the vendor's locks.
     static void SetPeriods(const rtps::RTPSParticipant &participant, bool isSettled);
+    // True if the participant `own` of this process has authenticated `peer`.
+    static bool IsAuthenticated(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer);
     // True if the participant `own` of this process and `peer` have each other's keys.
     static bool HasKeysOf(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer);
 

@@ -112,12 +112,6 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
         {
             Log()->Line("Fast DDS does not show its writer of keys: it says them to all");
         }
-        if constexpr (!MeetsOthersWithKeys)
-        {
-            Log()->Line(
-                "this version of Fast DDS meets no other version with keys, nor Cyclone DDS: "
-                "`transport: cyclonedds` meets all");
-        }
     }
 }
 

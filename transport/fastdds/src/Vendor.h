@@ -104,6 +104,7 @@ using RecursiveTimedMutex = eprosima::fastrtps::RecursiveTimedMutex;
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -113,6 +114,8 @@ using RecursiveTimedMutex = eprosima::fastrtps::RecursiveTimedMutex;
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#include "common/Rtps.h"
 
 namespace Rabit::FastDds
 {
@@ -183,8 +186,21 @@ std::optional<rtps::RTPSParticipantAttributes> LoadProfile(const std::string &fi
 // Switches intraprocess delivery off in this process. Call it before a participant is made.
 void SwitchIntraprocessOff();
 
+inline rtps::GUID_t GuidOf(const Rtps::GuidPrefix &participant, Rtps::EntityId entity)
+{
+    rtps::GUID_t guid({}, entity);
+    std::copy(participant.begin(), participant.end(), guid.guidPrefix.value);
+    return guid;
+}
+
 // A writer of a participant of this process, builtin ones included; nullptr if there is none.
 rtps::RTPSWriter *FindWriter(const rtps::GUID_t &guid);
+
+// Calls `deliver`, which hands an announcement or a goodbye of `peer` to the participant `own` of this
+// process. The vendor takes it for a protected one (AwaitsProtectedAnnouncements). Call it without the
+// vendor's locks, and for one participant of this process on one thread at a time.
+void AsProtected(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer,
+                 const std::function<void()> &deliver);
 
 }  // namespace Rabit::FastDds
 

@@ -4,8 +4,8 @@
 namespace Rabit::FastDds
 {
 
-// True if nodes with keys meet those of other versions and of Cyclone DDS.
-inline constexpr bool MeetsOthersWithKeys = true;
+// See Vendor3.h. Here, a plain announcement is enough.
+inline constexpr bool AwaitsProtectedAnnouncements = false;
 
 class ParticipantEvents : public rtps::RTPSParticipantListener
 {

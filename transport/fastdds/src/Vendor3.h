@@ -4,8 +4,10 @@
 namespace Rabit::FastDds
 {
 
-// True if nodes with keys meet those of other versions and of Cyclone DDS.
-inline constexpr bool MeetsOthersWithKeys = false;
+// True if the vendor discovers the endpoints of an authenticated participant only when it has the
+// participant's protected announcement (OMG DDS Security 1.1, 7.4: DCPSParticipantsSecure). Only Fast DDS
+// from version 2.10 on sends one.
+inline constexpr bool AwaitsProtectedAnnouncements = true;
 
 class ParticipantEvents : public rtps::RTPSParticipantListener
 {
