@@ -259,12 +259,17 @@ void Exploration::SetNodes(const PeersOverPaths &peers, const ProblemTexts &prob
 {
     std::vector<Node> nodes;
     const std::vector<const PeerTable::Peer *> heard = peers.Heard();
+    std::uint32_t sum = 0;  // BeatExtensions::FleetSum
+    for (const PeerTable::Peer *peer : heard)
+    {
+        sum += peer->State == Gateway::NodeState::LOST ? 0 : peer->Tag;
+    }
     for (const PeerTable::Peer *peer : heard)
     {
         nodes.push_back({peer->Node, peer->State, peer->Incarnation, peer->Offers, peer->Twice,
                          ClockAhead(*peer, now), peer->Beats.Heard(), peer->Beats.Missed(),
                          std::chrono::duration<double>(peer->Period).count(), StrainsOf(*peer, heard),
-                         problems.AreTold(peer->Node)});
+                         problems.AreTold(peer->Node), peer->FleetSum == sum});
     }
     {
         const std::lock_guard lock(_mutex);

@@ -61,10 +61,24 @@ bool BeatContents::IsPlaceDue(Duration now) const
     return _peers.OwnNameTwice() && (!_placeSaid || now - *_placeSaid >= PlacePeriod);
 }
 
+void BeatContents::LookAtFleet()
+{
+    const std::uint32_t sum = _peers.FleetSum();
+    const bool isNews = _peers.ToolsCome() != _toolsCome || (_peers.Tools() > 0 && sum != _fleetSum);
+    _fleetSumBeats = isNews && !_isTool ? FleetSumBeats : _fleetSumBeats;
+    _toolsCome = _peers.ToolsCome();
+    _fleetSum = sum;
+}
+
 std::size_t BeatContents::SizeOfMarks() const
 {
     return (_isTool ? BeatFormat::ToolMark : 0) + (_isReplay ? BeatFormat::ReplayMark : 0) +
            BeatFormat::FirstHeard(std::min(_firstHeard.size(), BeatExtensions::MostFirstHeard));
+}
+
+std::size_t BeatContents::SizeOfFleetSum() const
+{
+    return _fleetSumBeats > 0 ? BeatFormat::FleetSum : 0;
 }
 
 std::size_t BeatContents::SizeOfStrains() const
@@ -90,7 +104,7 @@ std::size_t BeatContents::Size(Duration now) const
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t news = SizeOfMarks() + SizeOfStrains() + SizeOfProblems(now) +
+    const std::size_t news = SizeOfMarks() + SizeOfFleetSum() + SizeOfStrains() + SizeOfProblems(now) +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
                              _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
@@ -106,9 +120,11 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
 {
     std::size_t room = std::min(most, BeatFormat::Largest);
     room -= std::min(room, BeatFormat::WithNews + SizeOfMarks());
-    // Reserved, since only a few beats tell of problems.
+    // Reserved, since only a few beats tell of problems and of the fleet.
     const std::size_t problems = SizeOfProblems(now) <= room ? SizeOfProblems(now) : 0;
     room -= problems;
+    const std::size_t fleetSum = SizeOfFleetSum() <= room ? SizeOfFleetSum() : 0;
+    room -= fleetSum;
     AddWants(beat, now, room);
     AddTypes(beat, now, room);
     if (problems > 0)
@@ -141,6 +157,11 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     if (!_firstHeard.empty())
     {
         BeatExtensions::SayFirstHeard(beat, _firstHeard);
+    }
+    if (fleetSum > 0)
+    {
+        BeatExtensions::SayFleetSum(beat, _fleetSum);
+        --_fleetSumBeats;
     }
     DropEmptyNews(beat);
 }

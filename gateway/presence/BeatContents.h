@@ -77,6 +77,12 @@ public:
     // Somebody has come.
     void RepeatProblems() { _problemBeats = _problems.Count > 0 ? ProblemBeats : _problemBeats; }
 
+    // After a tool has come, and after each change of the fleet while tools are there, this many beats in a
+    // row tell which nodes this one hears.
+    static constexpr int FleetSumBeats = 3;
+    // Processes tools that have come and nodes that came or went. Call before Size.
+    void LookAtFleet();
+
     // When a question is due, which need not wait for the next period; empty: no question is due.
     std::optional<Duration> QuestionDue() const;
     // When a part of the announcement is to be sent.
@@ -93,6 +99,7 @@ private:
     void AddPart(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddStates(Gateway::Beat &beat, std::size_t &room);
     std::size_t SizeOfMarks() const;
+    std::size_t SizeOfFleetSum() const;
     std::size_t SizeOfStrains() const;
     std::size_t SizeOfProblems(Duration now) const;
     std::size_t SizeOfPart(Duration now, std::size_t room) const;
@@ -115,6 +122,9 @@ private:
     std::vector<std::uint32_t> _states;  // versions
     std::size_t _nextState = 0;
     std::optional<Duration> _placeSaid;
+    std::uint64_t _toolsCome = 0;
+    std::uint32_t _fleetSum = 0;
+    int _fleetSumBeats = 0;  // that tell it in a row
 };
 
 }  // namespace Rabit

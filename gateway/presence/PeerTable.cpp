@@ -159,6 +159,7 @@ void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
     peer.Place.clear();
     peer.Problems = {};
     peer.HasToldProblems = false;
+    peer.FleetSum.reset();
 }
 
 bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
@@ -281,6 +282,10 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     const bool hearsHereFirst = BeatExtensions::IsFirstHeardHere(heard.Beat, _ownTag);
     change.State |= std::exchange(peer.HearsHereFirst, hearsHereFirst) != hearsHereFirst;
     change.State |= TakeProblems(peer, heard);
+    if (const std::optional<std::uint32_t> told = BeatExtensions::FleetSumIn(heard.Beat))
+    {
+        change.State |= std::exchange(peer.FleetSum, told) != told;
+    }
     change.Beat = true;
     if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())
     {

@@ -64,6 +64,8 @@ public:
         std::vector<LinkStrain> Strains;  // as its newest beat reports them
         // It hears this node by this path and by no better one (gateway/paths), as its newest beat says.
         bool HearsHereFirst = false;
+        // The sum of the nodes that it hears, as its beats told last (BeatExtensions::FleetSum).
+        std::optional<std::uint32_t> FleetSum;
         ProblemCount Problems;         // as its beats told last, now and then
         bool HasToldProblems = false;  // since its incarnation is heard
         Duration ProblemsTold{0};
@@ -147,9 +149,12 @@ public:
     const Peer *Find(const std::string &node) const;
     // Nodes that have been heard, by name; no tools.
     std::vector<const Peer *> Heard() const;
-    // Tools that are kept, by name; and their number.
+    // BeatExtensions::FleetSum of this node.
+    std::uint32_t FleetSum() const;
+    // Tools that are kept, by name; their number; and how many have come since the beginning.
     std::vector<std::string> HeardTools() const;
     std::size_t Tools() const { return _tools; }
+    std::uint64_t ToolsCome() const { return _toolsCome; }
     // Number of nodes forgotten, and of beats dropped because no room could be made for their node.
     std::uint64_t Forgotten() const { return _forgotten; }
     std::uint64_t CrowdedOut() const { return _crowdedOut; }
@@ -202,6 +207,7 @@ private:
     IsAsked _isAsked;
     std::map<std::string, Peer> _peers;
     std::size_t _tools = 0;  // of these
+    std::uint64_t _toolsCome = 0;
     MissingOffers _missing;
     SentBeats _sent;
     Duration _nextChange = Duration::max();  // not later than the next change by Advance

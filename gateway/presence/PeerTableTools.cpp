@@ -21,6 +21,16 @@ std::vector<std::string> PeerTable::HeardTools() const
     return names;
 }
 
+std::uint32_t PeerTable::FleetSum() const
+{
+    std::uint32_t sum = _ownTag;
+    for (const auto &[name, peer] : _peers)
+    {
+        sum += peer.IsTool || peer.State == NodeState::LOST ? 0 : peer.Tag;
+    }
+    return sum;
+}
+
 PeerTable::Change PeerTable::OnToolBeat(const HeardBeat &heard)
 {
     Change change;
@@ -72,6 +82,7 @@ PeerTable::Peer *PeerTable::GetOrMakeTool(const HeardBeat &heard)
     tool.Node = heard.Node;
     tool.IsTool = true;
     tool.State = NodeState::UP;
+    ++_toolsCome;
     BeginLife(tool, heard);
     return &tool;
 }

@@ -157,6 +157,10 @@ const Presence::Served &Presence::Service(Duration now)
     {
         _pace.Introduce(now);
     }
+    if (_peers.Tools() > 0)
+    {
+        _contents.LookAtFleet();
+    }
     return served;
 }
 

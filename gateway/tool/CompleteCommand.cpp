@@ -200,7 +200,8 @@ std::optional<GatewayConfig> NetworkOf(Words line, CommonOptions &options)
     }
 }
 
-// Listens for 0.8 s, then until every node has announced itself, 1.5 s in all at most: a shell waits for it.
+// Listens until the whole fleet is known, for 0.8 s at most, then until every node has announced itself, 1.5
+// s in all at most: a shell waits for it.
 Candidates FromFleet(const Words &line, const std::string &command, const Words &before, Wakeup &wakeup)
 {
     constexpr double everybody = 0.8;
@@ -212,7 +213,7 @@ Candidates FromFleet(const Words &line, const std::string &command, const Words 
         return {};
     }
     FleetSession session(*config, options, wakeup);
-    session.WaitUntil(everybody);
+    session.WaitUntil(everybody, [&session] { return session.IsFleetKnown(); });
     session.WaitUntil(
         longest, [&session] { return session.IsAnybodyThere() && Offers::AreComplete(session.Nodes()); });
     return ArgumentsIn(session.Nodes(), command, before);

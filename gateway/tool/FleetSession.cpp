@@ -139,7 +139,8 @@ void FleetSession::WaitForEverybody(const std::function<bool()> &isWhole)
 {
     const auto ends = [&] { return Underway().empty() && IsAnybodyThere() && isWhole(); };
     const double least = _announcements ? TwoAnnouncements : Everybody;
-    WaitUntil(_options.IsWaitGiven ? std::min(least, _options.Wait) : least);
+    WaitUntil(_options.IsWaitGiven ? std::min(least, _options.Wait) : least,
+              [&] { return !_options.IsWaitGiven && IsFleetKnown() && ends(); });
     if (WaitUntil(_options.Wait, ends) || _options.IsWaitGiven)
     {
         return;
@@ -165,7 +166,12 @@ double FleetSession::SecondsToHearEverybody() const
 
 bool FleetSession::IsEverybodyHeard() const
 {
-    return Seconds() >= SecondsToHearEverybody() && Underway().empty();
+    return (Seconds() >= SecondsToHearEverybody() || IsFleetKnown()) && Underway().empty();
+}
+
+bool FleetSession::IsFleetKnown() const
+{
+    return Offers::DoAllHearTheSame(Nodes());
 }
 
 std::vector<std::string> FleetSession::Underway() const

@@ -61,9 +61,9 @@ public:
     // Waits until `isDecided` returns true, for Patience() at most, and also asks it when all nodes should
     // have been heard. Returns its last result.
     bool WaitUntilDecided(const std::function<bool()> &isDecided);
-    // Waits until all nodes that are there are heard, and `isWhole` returns true; for 1.5 s at least. Without
-    // --wait it waits 3 s longer than usual for what is still lacking, as a node may be answering others;
-    // with keys 9 s, after up to 15 s for nodes that are being authenticated.
+    // Waits until all nodes that are there are heard, and `isWhole` returns true; for 1.5 s at least, unless
+    // IsFleetKnown. Without --wait it waits 3 s longer than usual for what is still lacking, as a node may be
+    // answering others; with keys 9 s, after up to 15 s for nodes that are being authenticated.
     void WaitForEverybody(const std::function<bool()> &isWhole);
     // The longest time to wait for a node, in seconds from the start of the session: --wait, and without it
     // longer than usual if this program has keys.
@@ -71,6 +71,9 @@ public:
     // True if every node that is there is heard, as far as this program can know. Nodes that beat more seldom
     // than others may be missing.
     bool IsEverybodyHeard() const;
+    // True if all nodes that are heard told that they hear the same nodes as this program. Then every node
+    // that any of them hears is heard here, however slow its radio is.
+    bool IsFleetKnown() const;
     // With keys: nodes with keys whose announcements came, and that are not heard, since they are being
     // authenticated, or do not let this program in.
     std::vector<std::string> Underway() const;

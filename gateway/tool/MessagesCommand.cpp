@@ -100,6 +100,9 @@ int Run(const Options &all, Wakeup &wakeup)
 {
     const CommonOptions &options = all.Common;
     FleetSession session(ConfigOf(options), options, wakeup);
+    // DDS programs without a gateway, which may read a message, are found by discovery alone. The nodes do
+    // not know how many there are.
+    session.WaitUntil(std::min(Offers::SecondsToHearEverybody({}), options.Wait));
     session.WaitForEverybody([&session] { return Offers::AreComplete(session.Nodes()); });
     if (wakeup.IsInterrupted())
     {

@@ -94,6 +94,23 @@ bool AreComplete(const std::vector<FleetSession::Node> &nodes)
                        { return node.Offers || node.State == Gateway::NodeState::LOST; });
 }
 
+bool DoAllHearTheSame(const std::vector<FleetSession::Node> &nodes)
+{
+    std::size_t live = 0;
+    for (const FleetSession::Node &node : nodes)
+    {
+        if (node.State != Gateway::NodeState::LOST)
+        {
+            if (!node.HearsTheSame)
+            {
+                return false;
+            }
+            ++live;
+        }
+    }
+    return live > 0;
+}
+
 double SecondsToHearEverybody(const std::vector<FleetSession::Node> &nodes)
 {
     double seconds = 1.5;

@@ -33,6 +33,10 @@ std::vector<std::string> Differences(const std::vector<FleetSession::Node> &node
 // True if every node that is not LOST has announced itself.
 bool AreComplete(const std::vector<FleetSession::Node> &nodes);
 
+// True if a live node is there, and all live nodes told that they hear the nodes that this program hears, and
+// no others.
+bool DoAllHearTheSame(const std::vector<FleetSession::Node> &nodes);
+
 // Seconds from the start of a session in which every node beats: 1.5, or twice the longest period that the
 // nodes announce which were heard. Nodes with a budget beat seldom, and a beat may be lost.
 double SecondsToHearEverybody(const std::vector<FleetSession::Node> &nodes);

@@ -58,8 +58,16 @@ Had FromFleet(const Options &options, const std::string &node, Wakeup &wakeup)
         const auto found = types.find(options.Type);
         return found == types.end() ? Offers::Definitions() : found->second;
     };
-    // Listens for --wait seconds for a node of that name: two nodes of one name disturb each other.
-    if (session.WaitUntil(options.Common.Wait, [&] { return !session.TakenOf({node}).empty(); }))
+    // Two nodes of one name disturb each other, so this listens for a node of that name: for --wait seconds,
+    // without it until the whole fleet is known.
+    const auto isTaken = [&] { return !session.TakenOf({node}).empty(); };
+    const auto isDecided = [&]
+    {
+        return isTaken() || (!options.Common.IsWaitGiven && session.IsFleetKnown() &&
+                             Offers::AreComplete(session.Nodes()));
+    };
+    session.WaitUntil(options.Common.Wait, isDecided);
+    if (isTaken())
     {
         Output::Talk(NameIsTaken(node));
         return {nullptr, ProblemFound};

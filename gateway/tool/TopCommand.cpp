@@ -143,10 +143,8 @@ std::vector<Row> Ask(FleetSession &session, double until)
 
 int Run(const Options &options, Wakeup &wakeup)
 {
-    // Seconds in which most nodes are heard. Nodes that beat more seldom need --wait.
-    constexpr double everybody = 1.5;
     FleetSession session(ConfigWithoutOffers(options.Common), options.Common, wakeup);
-    session.WaitUntil(options.Common.IsWaitGiven ? options.Common.Wait : everybody);
+    session.WaitUntil(options.Common.IsWaitGiven ? options.Common.Wait : 0.0);
     session.WaitForEverybody([] { return true; });
     if (!session.IsAnybodyThere())
     {

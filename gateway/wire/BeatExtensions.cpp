@@ -24,12 +24,17 @@ Gateway::Wanted &Add(Gateway::Beat &beat, std::uint16_t kind)
     return extension;
 }
 
-bool Has(const Gateway::Beat &beat, std::uint16_t kind)
+// The bytes of an extension, if there are at least as many; empty: the beat has none.
+std::optional<std::span<const std::uint8_t>> Find(const Gateway::Beat &beat, std::uint16_t kind,
+                                                  std::size_t least)
 {
     const auto &wants = NewsOf(beat).wants;
-    return std::any_of(wants.begin(), wants.end(),
-                       [kind](const Gateway::Wanted &wanted)
-                       { return wanted.node == Nobody && wanted.offers == kind; });
+    const auto found = std::find_if(
+        wants.begin(), wants.end(),
+        [&](const Gateway::Wanted &wanted)
+        { return wanted.node == Nobody && wanted.offers == kind && wanted.states.size() >= least; });
+    return found == wants.end() ? std::nullopt
+                                : std::optional(std::span(found->states.data(), found->states.size()));
 }
 
 }  // namespace
@@ -41,7 +46,7 @@ void MarkTool(Gateway::Beat &beat)
 
 bool IsTool(const Gateway::Beat &beat)
 {
-    return Has(beat, Tool);
+    return Find(beat, Tool, 0).has_value();
 }
 
 void MarkReplay(Gateway::Beat &beat)
@@ -51,7 +56,7 @@ void MarkReplay(Gateway::Beat &beat)
 
 bool IsReplay(const Gateway::Beat &beat)
 {
-    return Has(beat, Replay);
+    return Find(beat, Replay, 0).has_value();
 }
 
 void Ask(Gateway::Beat &beat, const TypeQuestion &question)
@@ -157,20 +162,30 @@ bool IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag)
     return false;
 }
 
+void SayFleetSum(Gateway::Beat &beat, std::uint32_t sum)
+{
+    std::vector<std::uint8_t> bytes;
+    Put(sum, bytes);
+    Add(beat, FleetSum).states.assign(bytes.begin(), bytes.end());
+}
+
+std::optional<std::uint32_t> FleetSumIn(const Gateway::Beat &beat)
+{
+    std::optional<std::span<const std::uint8_t>> bytes = Find(beat, FleetSum, sizeof(std::uint32_t));
+    return bytes ? std::optional(Take<std::uint32_t>(*bytes)) : std::nullopt;
+}
+
 std::optional<ProblemCount> ProblemsIn(const Gateway::Beat &beat)
 {
-    for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
+    std::optional<std::span<const std::uint8_t>> bytes = Find(beat, Problems, ProblemBytes);
+    if (!bytes)
     {
-        if (wanted.node == Nobody && wanted.offers == Problems && wanted.states.size() >= ProblemBytes)
-        {
-            std::span<const std::uint8_t> bytes(wanted.states.data(), wanted.states.size());
-            ProblemCount problems;
-            problems.Count = Take<std::uint16_t>(bytes);
-            problems.Digest = Take<std::uint32_t>(bytes);
-            return problems;
-        }
+        return std::nullopt;
     }
-    return std::nullopt;
+    ProblemCount problems;
+    problems.Count = Take<std::uint16_t>(*bytes);
+    problems.Digest = Take<std::uint32_t>(*bytes);
+    return problems;
 }
 
 }  // namespace Rabit::BeatExtensions

@@ -28,6 +28,10 @@ inline constexpr std::uint16_t Problems =
 // Wanted::states.
 inline constexpr std::uint16_t FirstHeardHere = 6;
 
+// The sum of the tags of the sender and of all nodes that it hears, in Wanted::states; said when a tool has
+// come. A tool that hears nodes with the same sum has heard the whole fleet.
+inline constexpr std::uint16_t FleetSum = 7;
+
 // Bytes of Wanted::states.
 inline constexpr std::size_t TypeBytes = 16;
 inline constexpr std::size_t StrainBytes = 8;  // of each
@@ -69,5 +73,9 @@ std::optional<ProblemCount> ProblemsIn(const Gateway::Beat &beat);
 
 void SayFirstHeard(Gateway::Beat &beat, std::span<const std::uint32_t> tags);
 bool IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag);
+
+void SayFleetSum(Gateway::Beat &beat, std::uint32_t sum);
+// Empty if the beat does not tell.
+std::optional<std::uint32_t> FleetSumIn(const Gateway::Beat &beat);
 
 }  // namespace Rabit::BeatExtensions

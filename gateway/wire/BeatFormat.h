@@ -42,6 +42,9 @@ inline constexpr std::size_t ReplayMark = Wanted(0);
 // A ProblemCount.
 inline constexpr std::size_t Problems = Wanted(6);
 
+// A FleetSum.
+inline constexpr std::size_t FleetSum = Wanted(4);
+
 // The mark that `nodes` nodes are heard by this path and no better one.
 constexpr std::size_t FirstHeard(std::size_t nodes)
 {

@@ -84,6 +84,17 @@ protected:
         peers.OnBeat(heard);
     }
 
+    void HearTool(const std::string &tool, Ns at)
+    {
+        HeardBeat heard;
+        heard.Node = tool;
+        heard.Incarnation = 5;
+        heard.Beat = BeatAt(at);
+        BeatExtensions::MarkTool(heard.Beat);
+        heard.Arrival = at;
+        peers.OnBeat(heard);
+    }
+
     Gateway::Beat Next(Ns now, std::size_t most = BeatFormat::Largest)
     {
         const std::size_t said = contents.Size(now);
@@ -363,6 +374,48 @@ TEST_F(BeatContentsTest, ACrowdIsAskedEchoedAndToldInTurnsAndTheBeatStaysSmall)
     EXPECT_EQ(asked.size(), 100u);
     EXPECT_EQ(echoed.size(), 100u);
     EXPECT_EQ(told.size(), 100u);
+}
+
+TEST_F(BeatContentsTest, TheSumOfTheFleetIsSaidThreeTimesToEachToolThatComes)
+{
+    BeginLongAgo(100, 0);
+    Hear("uav1", 1s);
+    contents.LookAtFleet();
+    EXPECT_EQ(BeatExtensions::FleetSumIn(Next(2s)), std::nullopt) << "no tool is there";
+    for (const std::string tool : {"tool1", "tool2"})
+    {
+        HearTool(tool, 2s);
+        for (int i = 0; i < 3; ++i)
+        {
+            contents.LookAtFleet();
+            EXPECT_EQ(BeatExtensions::FleetSumIn(Next(2s)), peers.FleetSum());
+        }
+        contents.LookAtFleet();
+        EXPECT_EQ(BeatExtensions::FleetSumIn(Next(2s)), std::nullopt);
+    }
+}
+
+TEST_F(BeatContentsTest, TheSumOfTheFleetIsSaidAgainIfItChangesWhileAToolIsThere)
+{
+    BeginLongAgo(100, 0);
+    HearTool("tool", 1s);
+    for (int i = 0; i < 3; ++i)
+    {
+        contents.LookAtFleet();
+        Next(1s);
+    }
+    Hear("uav1", 2s);
+    contents.LookAtFleet();
+    EXPECT_EQ(BeatExtensions::FleetSumIn(Next(2s)), peers.FleetSum());
+}
+
+TEST_F(BeatContentsTest, AToolDoesNotSayTheSumOfTheFleet)
+{
+    contents.BeTool();
+    BeginLongAgo(100, 0);
+    HearTool("tool", 1s);
+    contents.LookAtFleet();
+    EXPECT_EQ(BeatExtensions::FleetSumIn(Next(1s)), std::nullopt);
 }
 
 }  // namespace

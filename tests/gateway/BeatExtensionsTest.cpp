@@ -126,5 +126,16 @@ TEST(BeatExtensions, TheCountOfProblemsIsWhatIsUnderstood)
     EXPECT_EQ(BeatExtensions::ProblemsIn(beat), std::nullopt);
 }
 
+TEST(BeatExtensions, TheSumOfAFleetIsWhatIsUnderstood)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    EXPECT_EQ(BeatExtensions::FleetSumIn(beat), std::nullopt);
+    BeatExtensions::MarkReplay(beat);
+    BeatExtensions::SayFleetSum(beat, 0xfedcba98);
+    EXPECT_EQ(BeatExtensions::FleetSumIn(beat), 0xfedcba98);
+    NewsOf(beat).wants.back().states.pop_back();
+    EXPECT_EQ(BeatExtensions::FleetSumIn(beat), std::nullopt);
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -444,5 +444,39 @@ TEST_F(ExplorerTest, SaysWhenSomethingIsNew)
     EXPECT_GT(changes, before);
 }
 
+TEST_F(ExplorerTest, TellsThatANodeHearsTheNodesThatTheToolHears)
+{
+    fleet.Add(AircraftConfig("uav2"));
+    fleet.RunFor(3s);
+    const FleetExplorer &explorer = AddTool();
+    const auto doAll = [&explorer]
+    {
+        const auto nodes = explorer.Nodes();
+        return nodes.size() == 2 && nodes[0].HearsTheSame && nodes[1].HearsTheSame;
+    };
+    EXPECT_TRUE(fleet.RunUntil(doAll, 1s));
+}
+
+TEST_F(ExplorerTest, ANodeThatTheToolHearsLateIsLackingUntilThen)
+{
+    fleet.Add(AircraftConfig("uav2"));
+    fleet.RunFor(3s);
+    SimulatedFaults nothing;
+    nothing.Loss = 1.0;
+    fleet.Network.SetFaults("uav2", "tool", nothing);
+    const FleetExplorer &explorer = AddTool();
+    fleet.RunFor(5s);
+    ASSERT_THAT(explorer.Nodes(), SizeIs(1));
+    EXPECT_TRUE(explorer.Nodes()[0].Offers.has_value());
+    EXPECT_FALSE(explorer.Nodes()[0].HearsTheSame);
+    fleet.Network.SetFaults("uav2", "tool", {});
+    const auto isKnown = [&explorer]
+    {
+        const auto nodes = explorer.Nodes();
+        return nodes.size() == 2 && nodes[0].HearsTheSame;
+    };
+    EXPECT_TRUE(fleet.RunUntil(isKnown, 5s));
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <rabit/RabitQueueReceipt.h>
 #include <rabit/RabitReactor.h>
+#include <rabit/gateway/FleetExplorer.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
 #include <unistd.h>
@@ -40,7 +41,9 @@ public:
     {
         _reactor.SetHandleSignals(false);
         _reactor.AddManager(std::make_unique<Idle>("Commands", Workspace));
-        _reactor.AddManager(std::make_unique<GatewayManager>(config, MakeTransport(backend), Workspace));
+        auto gateway = std::make_unique<GatewayManager>(config, MakeTransport(backend), Workspace);
+        Explorer = config.Tool ? &gateway->Explorer() : nullptr;
+        _reactor.AddManager(std::move(gateway));
         _runner = std::thread([this] { _reactor.Run(); });
     }
     ~Process()
@@ -57,6 +60,7 @@ public:
     }
 
     RabitWorkspace Workspace;
+    FleetExplorer *Explorer = nullptr;  // of a tool
 
 private:
     RabitReactor _reactor;
@@ -113,6 +117,23 @@ TEST_P(RealToolTest, SeesSendsAndLeavesWithoutBeingANodeOfTheFleet)
     }
     EXPECT_TRUE(Eventually([&] { return node.Fleet().inbound.empty(); })) << "the link of the tool is kept";
     EXPECT_TRUE(node.Fleet().nodes.empty());
+}
+
+TEST_P(RealToolTest, LearnsThatItHearsTheWholeFleet)
+{
+    GatewayConfig toolConfig = Config("tool");
+    toolConfig.Tool.emplace();
+    Process node1(Config("uav1"), GetParam().first);
+    Process node2(Config("uav2"), GetParam().second);
+    ASSERT_TRUE(
+        Eventually([&] { return node1.Fleet().nodes.size() == 1 && node2.Fleet().nodes.size() == 1; }));
+    Process tool(toolConfig, GetParam().second);
+    const auto isKnown = [&]
+    {
+        const auto nodes = tool.Explorer->Nodes();
+        return nodes.size() == 2 && nodes[0].HearsTheSame && nodes[1].HearsTheSame;
+    };
+    EXPECT_TRUE(Eventually(isKnown));
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, RealToolTest, ::testing::ValuesIn(AllBackendPairs()), NameOfPair);

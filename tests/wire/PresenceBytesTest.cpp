@@ -31,6 +31,9 @@ constexpr const char *FullBeatBytes =
 constexpr const char *ProblemBeatBytes =
     "0001000003bef401040302010100000000000000000100000000000001000000\n"
     "000000000500000006000000030098badcfe0000000000000000000000000000";
+constexpr const char *FleetBeatBytes =
+    "0001000003bef401040302010100000000000000000100000000000001000000\n"
+    "00000000070000000400000098badcfe000000000000000000000000";
 constexpr const char *LastBeatBytes = "0001000103be60eaffffffff010000000000000001000000";
 constexpr const char *AnnouncementBytes =
     "000100030200000005000000506f7365000000000a0000005561763a3a506f73\n"
@@ -85,6 +88,18 @@ Gateway::Beat ProblemBeat()
     beat.offers = 0x01020304;
     beat.source_ns = 1;
     BeatExtensions::Say(beat, ProblemCount{.Count = 3, .Digest = 0xfedcba98});
+    return beat;
+}
+
+// A beat of a node that has heard a tool.
+Gateway::Beat FleetBeat()
+{
+    Gateway::Beat beat;
+    beat.format = BeatFormat::Present;
+    beat.next_ms = 500;
+    beat.offers = 0x01020304;
+    beat.source_ns = 1;
+    BeatExtensions::SayFleetSum(beat, 0xfedcba98);
     return beat;
 }
 
@@ -190,6 +205,16 @@ TEST(PresenceBytes, OfABeatWithProblemsAreAccepted)
 TEST(PresenceBytes, OfABeatWithProblemsAreTheRecordedOnes)
 {
     EXPECT_EQ(HexOf(Encoded(ProblemBeat())), ProblemBeatBytes);
+}
+
+TEST(PresenceBytes, OfABeatToAToolAreAccepted)
+{
+    EXPECT_EQ(BeatExtensions::FleetSumIn(Accepted(BytesOf(FleetBeatBytes))), 0xfedcba98);
+}
+
+TEST(PresenceBytes, OfABeatToAToolAreTheRecordedOnes)
+{
+    EXPECT_EQ(HexOf(Encoded(FleetBeat())), FleetBeatBytes);
 }
 
 }  // namespace

@@ -59,6 +59,18 @@ TEST(Offers, TheAnnouncementOfTheNamedNodeIsAllThatCanCome)
     EXPECT_FALSE(Offers::AreAllThere({Silent(Aircraft("uav1"))}, "uav1", true));
 }
 
+TEST(Offers, AFleetIsKnownIfAllLiveNodesHearTheSame)
+{
+    auto near = Aircraft("uav1");
+    auto far = Aircraft("uav2");
+    near.HearsTheSame = true;
+    EXPECT_FALSE(Offers::DoAllHearTheSame({}));
+    EXPECT_TRUE(Offers::DoAllHearTheSame({near}));
+    EXPECT_FALSE(Offers::DoAllHearTheSame({near, far}));
+    EXPECT_TRUE(Offers::DoAllHearTheSame({near, Lost(far)}));
+    EXPECT_FALSE(Offers::DoAllHearTheSame({Lost(far)}));
+}
+
 TEST(Offers, OfANodeThatWasNotHeardNothingCanComeOnceEverybodyWasHeard)
 {
     EXPECT_FALSE(Offers::AreAllThere({Aircraft("uav1")}, "uav2", false));

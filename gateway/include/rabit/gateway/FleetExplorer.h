@@ -62,6 +62,8 @@ public:
         // True if Gateway/Fleet has the node's own problems as it told them last, or that it has none. Always
         // false for nodes that `problems_of` does not name.
         bool AreProblemsKnown = false;
+        // True if it told that it hears the nodes that this gateway hears, and no others. For tools alone.
+        bool HearsTheSame = false;
     };
     // The other nodes, by name.
     virtual std::vector<Node> Nodes() const = 0;
