@@ -171,7 +171,7 @@ bool FleetSession::IsEverybodyHeard() const
 
 bool FleetSession::IsFleetKnown() const
 {
-    return Offers::DoAllHearTheSame(Nodes());
+    return !_announcements && Offers::DoAllHearTheSame(Nodes());
 }
 
 std::vector<std::string> FleetSession::Underway() const

@@ -72,7 +72,8 @@ public:
     // than others may be missing.
     bool IsEverybodyHeard() const;
     // True if all nodes that are heard told that they hear the same nodes as this program. Then every node
-    // that any of them hears is heard here, however slow its radio is.
+    // that any of them hears is heard here, however slow its radio is. With keys it is always false: a node
+    // that no other one has authenticated yet is found by its announcements alone, which take time.
     bool IsFleetKnown() const;
     // With keys: nodes with keys whose announcements came, and that are not heard, since they are being
     // authenticated, or do not let this program in.
