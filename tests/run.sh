@@ -51,7 +51,7 @@ if [ "${1:-}" = --quick ]; then
 fi
 if [ $# -eq 0 ]; then
     echo "All tests: about 20 minutes on two cores, and 30 more if nothing is built yet. --quick: a part of them."
-    set -- -LE 'mutation|arm64_long|bare_long|field_long|fuzz_long|package_long|soak'
+    set -- -LE 'mutation|arm64_long|bare_long|bench_long|field_long|fuzz_long|package_long|soak'
 fi
 "$root/docker/install-packages.sh"
 "$root/docker/install-packages.sh" "$root/docker/packages-check.txt" "$root/docker/packages-pack.txt"
