@@ -11,8 +11,8 @@
 namespace Rabit::WhatIf
 {
 
-// What a recording says of its flight, as facts of JSON. "t" and all other times are nanoseconds since the
-// beginning of the flight.
+// Returns facts of a recorded flight in JSON. "t" and all other times are nanoseconds since the beginning of
+// the flight.
 //   {"fact": "flight", "end": NS}                                      first
 //   {"fact": "note", "text": TEXT}
 std::vector<nlohmann::ordered_json> FactsOfFlight(const Recording &recording);
@@ -22,7 +22,7 @@ nlohmann::ordered_json FactOfLife(const Recording &recording, std::size_t life);
 // Name of a life in facts.
 std::string NameOfLife(const Recording &recording, std::size_t life);
 //   {"fact": "flown", "at": NODE, "node": NODE, "message": NAME, "arrived": [NS...], "posted": [NS...]}
-// What the recorded nodes received.
+// The messages that the recorded nodes received.
 std::vector<nlohmann::ordered_json> FactsOfArrivals(const Recording &recording);
 
 }  // namespace Rabit::WhatIf
