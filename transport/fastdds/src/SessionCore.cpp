@@ -93,6 +93,7 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
     attributes.participantID = static_cast<std::int32_t>(_number.Get());
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
+    ReadInterfaces();
     // Before the vendor has the participant: it would go on calling a session whose start has failed.
     _announceTimer.Start([this] { Announce(); });
     // Disabled at first, so that nothing is discovered before _participant is known here.

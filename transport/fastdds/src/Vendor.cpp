@@ -7,6 +7,15 @@
 #include <fastdds/dds/domain/qos/DomainParticipantExtendedQos.hpp>
 
 // Functions of the library that no installed header declares.
+namespace eprosima
+{
+class SystemInfo
+{
+public:
+    // Reads the interfaces of this machine anew, for participants made later. May be called by any thread.
+    static bool update_interfaces();
+};
+}  // namespace eprosima
 namespace eprosima::fastdds::dds::utils
 {
 void set_attributes_from_qos(rtps::RTPSParticipantAttributes &attributes, const DomainParticipantQos &qos);
@@ -129,6 +138,11 @@ void AsProtected(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer,
     deliver();
 }
 
+void ReadInterfaces()
+{
+    eprosima::SystemInfo::update_interfaces();
+}
+
 #else
 
 void AsProtected(const Rtps::GuidPrefix & /*own*/, const Rtps::GuidPrefix & /*peer*/,
@@ -156,6 +170,8 @@ void SwitchIntraprocessOff()
     library.intraprocess_delivery = eprosima::fastrtps::INTRAPROCESS_OFF;
     eprosima::fastrtps::xmlparser::XMLProfileManager::library_settings(library);
 }
+
+void ReadInterfaces() {}  // each participant does
 
 #endif
 

@@ -193,6 +193,10 @@ inline rtps::GUID_t GuidOf(const Rtps::GuidPrefix &participant, Rtps::EntityId e
     return guid;
 }
 
+// Makes a new participant know the interfaces of now: version 3 reads them once for all participants of a
+// process.
+void ReadInterfaces();
+
 // A writer of a participant of this process, builtin ones included; nullptr if there is none.
 rtps::RTPSWriter *FindWriter(const rtps::GUID_t &guid);
 
