@@ -1,6 +1,7 @@
 """Flies every aircraft that is low to 120 m, and tells what became of it."""
 
 import asyncio
+import contextlib
 import sys
 
 import rabit
@@ -18,4 +19,5 @@ async def main() -> None:
                 print(pose.node, outcome, flush=True)
 
 
-asyncio.run(main())
+with contextlib.suppress(KeyboardInterrupt):  # Ctrl-C
+    asyncio.run(main())

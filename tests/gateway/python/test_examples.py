@@ -45,6 +45,9 @@ def test_an_aircraft_in_python_obeys_the_first_program(one_network, tmp_path):
         try:
             assert planner.stdout.readline() == "uav7 Outcome.DELIVERED\n"
             assert aircraft.stdout.readline().startswith("Uav.Goto(")
+            planner.send_signal(signal.SIGINT)
+            said, _ = planner.communicate(timeout=60)
+            assert (planner.returncode, said.replace("uav7 Outcome.DELIVERED\n", "")) == (0, "")
         finally:
             planner.kill()
             aircraft.send_signal(signal.SIGINT)
