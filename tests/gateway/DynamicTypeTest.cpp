@@ -72,11 +72,12 @@ TEST_F(DynamicTypeTest, IsPublishedAndMirrored)
 
 TEST_F(DynamicTypeTest, IsReportedAndSendsNothingIfTheProgramHasAnotherUnderTheName)
 {
-    SimulatedNode &uav = fleet.Add(Sender());
-    SimulatedNode &ground = fleet.Add(Receiver());
     auto posted = std::make_shared<DynamicMessage>(order);
+    SimulatedNode &uav =
+        fleet.Add(Sender(), [&posted](SimulatedNode &node, GatewayConfig & /* config */)
+                  { ASSERT_TRUE(node.Workspace.AddPublishSubscribeMessage("Track", posted)); });
+    SimulatedNode &ground = fleet.Add(Receiver());
     auto mirrored = std::make_shared<DynamicMessage>(track);
-    ASSERT_TRUE(uav.Workspace.AddPublishSubscribeMessage("Track", posted));
     ASSERT_TRUE(ground.Workspace.AddPublishSubscribeMessage("uav1/Track", mirrored));
     fleet.RunFor(3s);
     posted->PostMessage();
@@ -84,6 +85,12 @@ TEST_F(DynamicTypeTest, IsReportedAndSendsNothingIfTheProgramHasAnotherUnderTheN
     EXPECT_FALSE(mirrored->FetchMessage());
     EXPECT_THAT(uav.Problems(),
                 HasSubstr("publish Track: the local message `Track` is of another type than `Late::Track`"));
+}
+
+TEST_F(DynamicTypeTest, IsNotAttachedUnderThePublishedNameOfAnother)
+{
+    SimulatedNode &uav = fleet.Add(Sender());
+    EXPECT_FALSE(uav.Workspace.AddPublishSubscribeMessage("Track", std::make_shared<DynamicMessage>(order)));
 }
 
 TEST_F(DynamicTypeTest, IsSentToAQueue)
