@@ -37,8 +37,6 @@ public:
     // largestDatagram: on the air, with its headers.
     explicit AirBudget(std::size_t largestDatagram) : _largestDatagram(largestDatagram) {}
 
-    // At the beginning.
-    void SetUnlimited() { SetLimits({}, {}, Duration(0)); }
     void SetBudget(double bytesPerSecond, Duration now) { SetLimits(bytesPerSecond, {}, now); }
     void SetPace(double bytesPerSecond, Duration now) { SetLimits({}, bytesPerSecond, now); }
     // Both limits in bytes a second; empty: no such limit.

@@ -53,9 +53,6 @@ public:
     // That acknowledgement was sent.
     void Acknowledged(const LinkAck &ack);
 
-    // The source's number for the link.
-    std::uint32_t Link() const { return _link; }
-    const std::string &Queue() const { return _queue; }
     LinkReceiverCounters Counters() const;
     std::string Describe() const;
 
@@ -91,7 +88,7 @@ private:
     LinkContext &_context;
     const std::string _source;
     const std::string _queue;
-    std::uint32_t _link = 0;
+    std::uint32_t _link = 0;  // the source's number for the link
 
     // The session: the stream of the sender's incarnation that is being received.
     std::uint64_t _senderLife = 0;  // s_inc; 0: there is no session

@@ -70,8 +70,6 @@ public:
     void Close();
 
     bool HasPending() const { return _outbox.Count() > 0; }
-    std::uint32_t Number() const { return _number; }
-    const std::string &Queue() const { return _queue; }
     LinkSenderCounters Counters() const;
     std::string Describe() const;
 
