@@ -64,7 +64,7 @@ std::uint64_t CounterOf(std::uint64_t incarnation)
     return incarnation >> 32;
 }
 
-TEST_F(IncarnationStoreFile, rises_at_every_start_even_within_a_second_and_when_the_clock_steps_back)
+TEST_F(IncarnationStoreFile, RisesAtEveryStartEvenWithinASecondAndWhenTheClockStepsBack)
 {
     EXPECT_EQ(CounterOf(Live(1000)), 1000U);
     EXPECT_EQ(CounterOf(Live(1000)), 1001U);
@@ -72,7 +72,7 @@ TEST_F(IncarnationStoreFile, rises_at_every_start_even_within_a_second_and_when_
     EXPECT_EQ(CounterOf(Live(2000)), 2000U);
 }
 
-TEST_F(IncarnationStoreFile, is_stored_when_save_returns_and_not_before)
+TEST_F(IncarnationStoreFile, IsStoredWhenSaveReturnsAndNotBefore)
 {
     IncarnationStore store = Start(1000);
     store.Above(0);
@@ -86,7 +86,7 @@ TEST_F(IncarnationStoreFile, is_stored_when_save_returns_and_not_before)
     EXPECT_EQ(store.Error(), "");
 }
 
-TEST_F(IncarnationStoreFile, rises_above_a_floor_and_above_itself)
+TEST_F(IncarnationStoreFile, RisesAboveAFloorAndAboveItself)
 {
     IncarnationStore store = Start(1000);
     const std::uint64_t first = store.Above(0);
@@ -96,14 +96,14 @@ TEST_F(IncarnationStoreFile, rises_above_a_floor_and_above_itself)
     EXPECT_EQ(CounterOf(store.Above((7000ULL << 32) | 0xffffffff)), 7001U);
 }
 
-TEST_F(IncarnationStoreFile, is_made_from_the_wall_clock_when_the_file_is_lost)
+TEST_F(IncarnationStoreFile, IsMadeFromTheWallClockWhenTheFileIsLost)
 {
     Live(1000);
     std::filesystem::remove_all(_directory);
     EXPECT_EQ(CounterOf(Live(1300)), 1300U);
 }
 
-TEST_F(IncarnationStoreFile, tells_of_an_unusable_file_and_replaces_it)
+TEST_F(IncarnationStoreFile, TellsOfAnUnusableFileAndReplacesIt)
 {
     for (const char *text : {"rubbish\n", "", "12x\n", "-3\n", "99999999999999\n"})
     {
@@ -119,7 +119,7 @@ TEST_F(IncarnationStoreFile, tells_of_an_unusable_file_and_replaces_it)
     }
 }
 
-TEST_F(IncarnationStoreFile, tells_of_a_directory_that_cannot_be_made)
+TEST_F(IncarnationStoreFile, TellsOfADirectoryThatCannotBeMade)
 {
     WriteFile("1\n");
     const std::filesystem::path notADirectory = _directory / "uav1.incarnation" / "state";
@@ -130,7 +130,7 @@ TEST_F(IncarnationStoreFile, tells_of_a_directory_that_cannot_be_made)
     EXPECT_EQ(CounterOf(store.Above(0)), 1001U) << "within one process it rises all the same";
 }
 
-TEST_F(IncarnationStoreFile, needs_no_file)
+TEST_F(IncarnationStoreFile, NeedsNoFile)
 {
     IncarnationStore store("", "uav1", [] { return Nanoseconds(1000); });
     EXPECT_EQ(CounterOf(store.Above(0)), 1000U);
@@ -138,7 +138,7 @@ TEST_F(IncarnationStoreFile, needs_no_file)
     EXPECT_TRUE(store.File().empty());
 }
 
-TEST_F(IncarnationStoreFile, has_random_low_bits)
+TEST_F(IncarnationStoreFile, HasRandomLowBits)
 {
     const std::uint64_t first = IncarnationStore("", "uav1", [] { return Nanoseconds(1000); }).Above(0);
     bool differs = false;
@@ -149,7 +149,7 @@ TEST_F(IncarnationStoreFile, has_random_low_bits)
     EXPECT_TRUE(differs);
 }
 
-TEST_F(IncarnationStoreFile, rises_within_a_second_without_a_file)
+TEST_F(IncarnationStoreFile, RisesWithinASecondWithoutAFile)
 {
     constexpr std::int64_t Start = 1'700'000'000'000'000'000;
     constexpr std::int64_t Step = 20'000'000;  // faster than any process restarts
@@ -163,27 +163,27 @@ TEST_F(IncarnationStoreFile, rises_within_a_second_without_a_file)
     }
 }
 
-TEST_F(IncarnationStoreFile, never_gives_out_the_highest_counter)
+TEST_F(IncarnationStoreFile, NeverGivesOutTheHighestCounter)
 {
     IncarnationStore store = Start(1000);
     EXPECT_EQ(CounterOf(store.Above(0xfffffffdULL << 32)), 0xfffffffeU);
     EXPECT_EQ(CounterOf(store.Above(0)), 0xfffffffeU);
 }
 
-TEST_F(IncarnationStoreFile, does_not_believe_a_clock_that_would_use_up_the_counter)
+TEST_F(IncarnationStoreFile, DoesNotBelieveAClockThatWouldUseUpTheCounter)
 {
     EXPECT_EQ(CounterOf(Live(1000)), 1000U);
     EXPECT_EQ(CounterOf(Live(0xf0000000LL)), 1001U);
     EXPECT_EQ(CounterOf(Live(1LL << 33)), 1002U);
 }
 
-TEST_F(IncarnationStoreFile, a_node_name_cannot_leave_the_directory)
+TEST_F(IncarnationStoreFile, ANodeNameCannotLeaveTheDirectory)
 {
     const IncarnationStore store(_directory, "../u v1", [] { return 1; });
     EXPECT_EQ(store.File(), _directory / "..%2fu%20v1.incarnation");
 }
 
-TEST_F(IncarnationStoreFile, the_real_wall_clock_is_used_by_default)
+TEST_F(IncarnationStoreFile, TheRealWallClockIsUsedByDefault)
 {
     EXPECT_GT(CounterOf(IncarnationStore("", "uav1").Above(0)), 1600000000U);
 }

@@ -14,21 +14,21 @@ namespace Rabit
 namespace
 {
 
-TEST(LinkPayloadPool, memory_that_nobody_holds_is_used_again)
+TEST(LinkPayloadPool, MemoryThatNobodyHoldsIsUsedAgain)
 {
     const auto pool = std::make_shared<LinkPayloadPool>();
     const std::uint8_t *const first = pool->Make(100)->Writable().data();
     EXPECT_EQ(pool->Make(90)->Writable().data(), first);
 }
 
-TEST(LinkPayloadPool, memory_that_is_held_is_not_used_again)
+TEST(LinkPayloadPool, MemoryThatIsHeldIsNotUsedAgain)
 {
     const auto pool = std::make_shared<LinkPayloadPool>();
     const LinkPayload held = pool->Make(100);
     EXPECT_NE(pool->Make(100)->View().data(), held->View().data());
 }
 
-TEST(LinkPayloadPool, payloads_of_every_size_are_as_long_as_asked)
+TEST(LinkPayloadPool, PayloadsOfEverySizeAreAsLongAsAsked)
 {
     const auto pool = std::make_shared<LinkPayloadPool>();
     for (int round = 0; round < 2; ++round)
@@ -42,7 +42,7 @@ TEST(LinkPayloadPool, payloads_of_every_size_are_as_long_as_asked)
     }
 }
 
-TEST(LinkPayloadPool, a_payload_outlives_whoever_made_the_pool)
+TEST(LinkPayloadPool, APayloadOutlivesWhoeverMadeThePool)
 {
     auto pool = std::make_shared<LinkPayloadPool>();
     const std::shared_ptr<LinkBytes> bytes = pool->Make(10);
@@ -51,7 +51,7 @@ TEST(LinkPayloadPool, a_payload_outlives_whoever_made_the_pool)
     EXPECT_EQ(bytes->View()[9], 1);
 }
 
-TEST(LinkPayloadPool, what_one_thread_gives_back_another_takes)
+TEST(LinkPayloadPool, WhatOneThreadGivesBackAnotherTakes)
 {
     const auto pool = std::make_shared<LinkPayloadPool>();
     const auto work = [&pool](std::uint8_t mark, bool &intact)

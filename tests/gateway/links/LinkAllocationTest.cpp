@@ -53,7 +53,7 @@ private:
     LinkFrame _frame;
 };
 
-TEST(LinkAllocation, a_message_in_the_steady_state_costs_none)
+TEST(LinkAllocation, AMessageInTheSteadyStateCostsNone)
 {
     LinkTime now = 1s;
     Wired a("a", 1);

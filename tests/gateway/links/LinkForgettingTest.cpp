@@ -25,7 +25,7 @@ StoredFrame HelloOf(const std::string &node, PlayedPeer &peer)
     return hello;
 }
 
-TEST(LinkForgetting, a_crowd_of_names_without_links_makes_room_for_each_next_one)
+TEST(LinkForgetting, ACrowdOfNamesWithoutLinksMakesRoomForEachNextOne)
 {
     NodeUnderTest a(ForTwo());
     PlayedPeer peer;
@@ -39,7 +39,7 @@ TEST(LinkForgetting, a_crowd_of_names_without_links_makes_room_for_each_next_one
     EXPECT_NE(a.Enqueue("m"), 0U);
 }
 
-TEST(LinkForgetting, a_peer_for_which_messages_wait_is_kept)
+TEST(LinkForgetting, APeerForWhichMessagesWaitIsKept)
 {
     NodeUnderTest a(ForTwo());
     a.Enqueue("m", "b");
@@ -51,7 +51,7 @@ TEST(LinkForgetting, a_peer_for_which_messages_wait_is_kept)
     EXPECT_EQ(a.SenderCounters().Pending, 1U);
 }
 
-TEST(LinkForgetting, a_live_peer_with_links_is_kept_and_a_silent_one_makes_room)
+TEST(LinkForgetting, ALivePeerWithLinksIsKeptAndASilentOneMakesRoom)
 {
     NodeUnderTest a(ForTwo());
     PlayedPeer b;
@@ -65,7 +65,7 @@ TEST(LinkForgetting, a_live_peer_with_links_is_kept_and_a_silent_one_makes_room)
     EXPECT_THAT(a.ReceiverCounters().SessionsOpened, 1U) << "b was heard 2 s ago";
 }
 
-TEST(LinkForgetting, what_was_delivered_before_is_not_delivered_again_when_the_sender_comes_back)
+TEST(LinkForgetting, WhatWasDeliveredBeforeIsNotDeliveredAgainWhenTheSenderComesBack)
 {
     NodeUnderTest a;
     PlayedPeer b;
@@ -82,7 +82,7 @@ TEST(LinkForgetting, what_was_delivered_before_is_not_delivered_again_when_the_s
     EXPECT_GT(hellos.back().Fields.SenderLife, b.KnownLife) << "the sender must take it for a restart";
 }
 
-TEST(LinkForgetting, the_sender_goes_on_once_it_knows)
+TEST(LinkForgetting, TheSenderGoesOnOnceItKnows)
 {
     NodeUnderTest a;
     PlayedPeer b;
@@ -97,7 +97,7 @@ TEST(LinkForgetting, the_sender_goes_on_once_it_knows)
     EXPECT_THAT(a.TakeDelivered(), SizeIs(1));
 }
 
-TEST(LinkForgetting, the_next_stream_to_a_forgotten_peer_outranks_the_last_one)
+TEST(LinkForgetting, TheNextStreamToAForgottenPeerOutranksTheLastOne)
 {
     NodeUnderTest a;
     PlayedPeer b;
@@ -116,7 +116,7 @@ TEST(LinkForgetting, the_next_stream_to_a_forgotten_peer_outranks_the_last_one)
     EXPECT_GT(second[0].Fields.SenderLife, first[0].Fields.SenderLife);
 }
 
-TEST(LinkForgetting, other_peers_see_nothing_of_it)
+TEST(LinkForgetting, OtherPeersSeeNothingOfIt)
 {
     NodeUnderTest a;
     PlayedPeer b;
@@ -129,7 +129,7 @@ TEST(LinkForgetting, other_peers_see_nothing_of_it)
     EXPECT_GT(a.Node->IncarnationTo("c"), NodeUnderTest::FirstLife);
 }
 
-TEST(LinkForgetting, a_peer_that_remembers_more_than_this_node_told_it_still_makes_it_raise)
+TEST(LinkForgetting, APeerThatRemembersMoreThanThisNodeToldItStillMakesItRaise)
 {
     NodeUnderTest a;
     PlayedPeer b;

@@ -77,7 +77,7 @@ StoredFrame FullFrame()
     return StoredFrame(frame);
 }
 
-TEST(LinkFrameCodec, gives_back_what_was_put_in)
+TEST(LinkFrameCodec, GivesBackWhatWasPutIn)
 {
     const StoredFrame stored = FullFrame();
     const LinkFrame frame = stored.View();
@@ -123,7 +123,7 @@ TEST(LinkFrameCodec, gives_back_what_was_put_in)
     }
 }
 
-TEST(LinkFrameCodec, cuts_times_so_that_nothing_seems_younger)
+TEST(LinkFrameCodec, CutsTimesSoThatNothingSeemsYounger)
 {
     StoredFrame stored = FullFrame();
     stored.Fields.Time += 999;
@@ -139,7 +139,7 @@ TEST(LinkFrameCodec, cuts_times_so_that_nothing_seems_younger)
     EXPECT_EQ(decoded.Data.Items[0].TtlLeft, 1500000);
 }
 
-TEST(LinkFrameCodec, a_small_message_to_who_knows_all_costs_little)
+TEST(LinkFrameCodec, ASmallMessageToWhoKnowsAllCostsLittle)
 {
     const std::vector<std::uint8_t> payload(32, 1);
     LinkFrame frame;
@@ -154,7 +154,7 @@ TEST(LinkFrameCodec, a_small_message_to_who_knows_all_costs_little)
     EXPECT_EQ(LinkFrameCodec::EncodedSize(frame) - payload.size(), 25U);
 }
 
-TEST(LinkFrameCodec, a_thousand_delivered_parts_are_one_run)
+TEST(LinkFrameCodec, AThousandDeliveredPartsAreOneRun)
 {
     LinkFrame frame;
     frame.Clock = 1;
@@ -167,7 +167,7 @@ TEST(LinkFrameCodec, a_thousand_delivered_parts_are_one_run)
     EXPECT_LE(LinkFrameCodec::AckSize(ack), 9U);
 }
 
-TEST(LinkFrameCodec, refuses_what_is_cut_short)
+TEST(LinkFrameCodec, RefusesWhatIsCutShort)
 {
     const std::vector<std::uint8_t> bytes = Encoded(FullFrame().View());
     LinkFrame decoded;
@@ -177,7 +177,7 @@ TEST(LinkFrameCodec, refuses_what_is_cut_short)
     }
 }
 
-TEST(LinkFrameCodec, refuses_what_goes_on_after_the_end)
+TEST(LinkFrameCodec, RefusesWhatGoesOnAfterTheEnd)
 {
     std::vector<std::uint8_t> bytes = Encoded(FullFrame().View());
     bytes.push_back(0);
@@ -185,7 +185,7 @@ TEST(LinkFrameCodec, refuses_what_goes_on_after_the_end)
     EXPECT_FALSE(LinkFrameCodec::Decode(bytes, decoded));
 }
 
-TEST(LinkFrameCodec, refuses_another_version)
+TEST(LinkFrameCodec, RefusesAnotherVersion)
 {
     std::vector<std::uint8_t> bytes = Encoded(FullFrame().View());
     ++bytes[0];
@@ -195,7 +195,7 @@ TEST(LinkFrameCodec, refuses_another_version)
 
 // Bytes that decode can be encoded again and mean the same. Nothing reads beyond the end (the sanitizers
 // see it).
-TEST(LinkFrameCodec, damaged_bytes_do_no_harm)
+TEST(LinkFrameCodec, DamagedBytesDoNoHarm)
 {
     const std::vector<std::uint8_t> good = Encoded(FullFrame().View());
     std::mt19937 random(1);
@@ -224,7 +224,7 @@ TEST(LinkFrameCodec, damaged_bytes_do_no_harm)
     EXPECT_GT(decodable, 1000U);
 }
 
-TEST(LinkFrameCodec, random_bytes_do_no_harm)
+TEST(LinkFrameCodec, RandomBytesDoNoHarm)
 {
     std::mt19937 random(2);
     for (int i = 0; i < 100000; ++i)

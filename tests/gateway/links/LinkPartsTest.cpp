@@ -19,7 +19,7 @@ namespace
 
 using namespace std::chrono_literals;
 
-TEST(RingBuffer, behaves_as_a_deque_while_it_grows_and_wraps)
+TEST(RingBuffer, BehavesAsADequeWhileItGrowsAndWraps)
 {
     RingBuffer<int> ring;
     std::deque<int> model;
@@ -57,7 +57,7 @@ TEST(RingBuffer, behaves_as_a_deque_while_it_grows_and_wraps)
     }
 }
 
-TEST(RingBuffer, keeps_nothing_of_what_was_taken_out)
+TEST(RingBuffer, KeepsNothingOfWhatWasTakenOut)
 {
     RingBuffer<std::shared_ptr<int>> ring;
     const auto value = std::make_shared<int>(1);
@@ -68,7 +68,7 @@ TEST(RingBuffer, keeps_nothing_of_what_was_taken_out)
     EXPECT_EQ(value.use_count(), 1);
 }
 
-TEST(OutcomeHistory, remembers_the_last_1024_and_no_more)
+TEST(OutcomeHistory, RemembersTheLast1024AndNoMore)
 {
     OutcomeHistory history;
     history.Set(1, OutcomeHistory::Entry::Refused);
@@ -87,7 +87,7 @@ TEST(OutcomeHistory, remembers_the_last_1024_and_no_more)
 }
 
 // The figures of RFC 6298, section 2, worked out by hand.
-TEST(RoundTrip, follows_rfc_6298)
+TEST(RoundTrip, FollowsRfc6298)
 {
     RoundTrip times;
     EXPECT_FALSE(times.IsKnown());
@@ -100,7 +100,7 @@ TEST(RoundTrip, follows_rfc_6298)
     EXPECT_EQ(times.Latest(), 180ms);
 }
 
-TEST(AssemblyMemory, lets_one_go_beyond_the_limit_and_another_one_when_that_stands_still)
+TEST(AssemblyMemory, LetsOneGoBeyondTheLimitAndAnotherOneWhenThatStandsStill)
 {
     AssemblyMemory memory(100);
     Assembly a(memory);
@@ -119,7 +119,7 @@ TEST(AssemblyMemory, lets_one_go_beyond_the_limit_and_another_one_when_that_stan
     EXPECT_EQ(memory.Used(), 0U);
 }
 
-TEST(LinkOutcome, has_words_for_logs)
+TEST(LinkOutcome, HasWordsForLogs)
 {
     EXPECT_EQ(ToString(LinkOutcome::InDoubt), "in doubt");
     EXPECT_EQ(ToString(LinkRefusal::FullByBytes), "outbox full by bytes");

@@ -36,12 +36,12 @@ protected:
     LinkTime now{1s};
 };
 
-TEST_F(PathTest, begins_with_four_datagrams)
+TEST_F(PathTest, BeginsWithFourDatagrams)
 {
     EXPECT_EQ(path.Window(), 4 * One);
 }
 
-TEST_F(PathTest, doubles_in_each_round_trip_while_nothing_waits_on_the_way)
+TEST_F(PathTest, DoublesInEachRoundTripWhileNothingWaitsOnTheWay)
 {
     for (const std::size_t datagrams : {4U, 8U, 16U, 32U})
     {
@@ -51,7 +51,7 @@ TEST_F(PathTest, doubles_in_each_round_trip_while_nothing_waits_on_the_way)
     }
 }
 
-TEST_F(PathTest, shares_the_first_window_with_paths_that_start_at_the_same_time)
+TEST_F(PathTest, SharesTheFirstWindowWithPathsThatStartAtTheSameTime)
 {
     PathControl other(settings, starting);
     path.Sent(One, now);
@@ -66,7 +66,7 @@ TEST_F(PathTest, shares_the_first_window_with_paths_that_start_at_the_same_time)
     EXPECT_FALSE(third.HasRoom());
 }
 
-TEST_F(PathTest, a_path_that_was_used_in_full_no_longer_takes_part_of_the_first_window)
+TEST_F(PathTest, APathThatWasUsedInFullNoLongerTakesPartOfTheFirstWindow)
 {
     Round(100ms);
     Round(100ms);
@@ -79,7 +79,7 @@ TEST_F(PathTest, a_path_that_was_used_in_full_no_longer_takes_part_of_the_first_
     EXPECT_EQ(starting, path.InFlight()) << "until it starts anew";
 }
 
-TEST_F(PathTest, a_path_that_is_gone_takes_no_part_of_the_first_window)
+TEST_F(PathTest, APathThatIsGoneTakesNoPartOfTheFirstWindow)
 {
     {
         PathControl other(settings, starting);
@@ -88,7 +88,7 @@ TEST_F(PathTest, a_path_that_is_gone_takes_no_part_of_the_first_window)
     EXPECT_EQ(starting, 0U);
 }
 
-TEST_F(PathTest, a_path_without_answers_holds_up_no_other)
+TEST_F(PathTest, APathWithoutAnswersHoldsUpNoOther)
 {
     PathControl silent(settings, starting);
     path.Sent(One, now);
@@ -101,7 +101,7 @@ TEST_F(PathTest, a_path_without_answers_holds_up_no_other)
     EXPECT_EQ(starting, One);
 }
 
-TEST_F(PathTest, the_first_probe_waits_for_what_other_paths_have_sent_at_the_same_time)
+TEST_F(PathTest, TheFirstProbeWaitsForWhatOtherPathsHaveSentAtTheSameTime)
 {
     path.Measured(10ms, now, now);
     const LinkTime alone = path.ProbeTimeout();
@@ -113,7 +113,7 @@ TEST_F(PathTest, the_first_probe_waits_for_what_other_paths_have_sent_at_the_sam
     EXPECT_EQ(path.ProbeTimeout(), alone + emptyFrames * 10ms);
 }
 
-TEST_F(PathTest, does_not_grow_while_it_is_not_used)
+TEST_F(PathTest, DoesNotGrowWhileItIsNotUsed)
 {
     for (int i = 0; i < 10; ++i)
     {
@@ -125,7 +125,7 @@ TEST_F(PathTest, does_not_grow_while_it_is_not_used)
     EXPECT_EQ(path.Window(), 4 * One);
 }
 
-TEST_F(PathTest, grows_to_the_largest_window_on_a_wire_and_not_beyond)
+TEST_F(PathTest, GrowsToTheLargestWindowOnAWireAndNotBeyond)
 {
     for (int i = 0; i < 40; ++i)
     {
@@ -135,7 +135,7 @@ TEST_F(PathTest, grows_to_the_largest_window_on_a_wire_and_not_beyond)
     EXPECT_LE(path.PacedUntil(), now) << "and nothing is paced";
 }
 
-TEST_F(PathTest, shrinks_when_the_delay_rises_above_the_target)
+TEST_F(PathTest, ShrinksWhenTheDelayRisesAboveTheTarget)
 {
     for (int i = 0; i < 4; ++i)
     {
@@ -147,7 +147,7 @@ TEST_F(PathTest, shrinks_when_the_delay_rises_above_the_target)
     EXPECT_LT(path.Window(), before / 2);
 }
 
-TEST_F(PathTest, is_never_less_than_a_datagram)
+TEST_F(PathTest, IsNeverLessThanADatagram)
 {
     Round(20ms);
     for (int i = 0; i < 50; ++i)
@@ -158,7 +158,7 @@ TEST_F(PathTest, is_never_less_than_a_datagram)
     EXPECT_TRUE(path.HasRoom());
 }
 
-TEST_F(PathTest, loss_alone_does_not_shrink_it_on_a_radio)
+TEST_F(PathTest, LossAloneDoesNotShrinkItOnARadio)
 {
     for (int i = 0; i < 3; ++i)
     {
@@ -175,7 +175,7 @@ TEST_F(PathTest, loss_alone_does_not_shrink_it_on_a_radio)
     EXPECT_GT(path.LossRate(), 0.0);
 }
 
-TEST_F(PathTest, loss_shrinks_it_on_a_wire_down_to_what_a_radio_needs)
+TEST_F(PathTest, LossShrinksItOnAWireDownToWhatARadioNeeds)
 {
     for (int i = 0; i < 10; ++i)
     {
@@ -195,7 +195,7 @@ TEST_F(PathTest, loss_shrinks_it_on_a_wire_down_to_what_a_radio_needs)
     EXPECT_GE(path.Window(), 8 * One);
 }
 
-TEST_F(PathTest, begins_anew_after_an_outage)
+TEST_F(PathTest, BeginsAnewAfterAnOutage)
 {
     for (int i = 0; i < 6; ++i)
     {
@@ -206,7 +206,7 @@ TEST_F(PathTest, begins_anew_after_an_outage)
     EXPECT_LE(path.PacedUntil(), now);
 }
 
-TEST_F(PathTest, measures_the_shortest_round_trip_anew_with_one_datagram_under_way)
+TEST_F(PathTest, MeasuresTheShortestRoundTripAnewWithOneDatagramUnderWay)
 {
     Round(20ms);
     bool oneAtATime = false;
@@ -222,7 +222,7 @@ TEST_F(PathTest, measures_the_shortest_round_trip_anew_with_one_datagram_under_w
     EXPECT_GT(path.Window(), 2 * One) << "and goes on as before";
 }
 
-TEST_F(PathTest, spreads_a_window_over_the_round_trip)
+TEST_F(PathTest, SpreadsAWindowOverTheRoundTrip)
 {
     Round(200ms);
     path.Sent(One, now);
@@ -232,7 +232,7 @@ TEST_F(PathTest, spreads_a_window_over_the_round_trip)
     EXPECT_LT(path.PacedUntil(), now + 100ms);
 }
 
-TEST_F(PathTest, the_probe_timer_follows_the_round_trip_within_its_bounds)
+TEST_F(PathTest, TheProbeTimerFollowsTheRoundTripWithinItsBounds)
 {
     EXPECT_EQ(path.ProbeTimeout(), settings.FirstResend);
     path.Measured(100ms, now, now);
@@ -250,7 +250,7 @@ TEST_F(PathTest, the_probe_timer_follows_the_round_trip_within_its_bounds)
     EXPECT_EQ(slow.ProbeTimeout(), 3s) << "one straggler is no reason to fall silent";
 }
 
-TEST_F(PathTest, the_probe_timer_waits_for_answers_that_the_peer_holds_back_up_to_the_limit_of_its_backoff)
+TEST_F(PathTest, TheProbeTimerWaitsForAnswersThatThePeerHoldsBackUpToTheLimitOfItsBackoff)
 {
     const auto answer = [this](LinkTime time, int times)
     {
@@ -267,7 +267,7 @@ TEST_F(PathTest, the_probe_timer_waits_for_answers_that_the_peer_holds_back_up_t
     EXPECT_EQ(answer(20s, 3), settings.MaxResend);
 }
 
-TEST_F(PathTest, an_answer_that_came_late_since_an_earlier_one_was_lost_does_not_slow_the_probe_timer)
+TEST_F(PathTest, AnAnswerThatCameLateSinceAnEarlierOneWasLostDoesNotSlowTheProbeTimer)
 {
     path.Measured(10ms, now, now);
     path.Answered(30ms);
@@ -281,7 +281,7 @@ TEST_F(PathTest, an_answer_that_came_late_since_an_earlier_one_was_lost_does_not
     }
 }
 
-TEST_F(PathTest, a_long_wait_leaves_how_late_the_peer_answers_and_another_path_does_not)
+TEST_F(PathTest, ALongWaitLeavesHowLateThePeerAnswersAndAnotherPathDoesNot)
 {
     for (int i = 0; i < 5; ++i)
     {
@@ -293,7 +293,7 @@ TEST_F(PathTest, a_long_wait_leaves_how_late_the_peer_answers_and_another_path_d
     EXPECT_EQ(path.ProbeTimeout(), settings.FirstResend);
 }
 
-TEST_F(PathTest, asks_for_an_acknowledgement_in_time_and_not_for_each_datagram)
+TEST_F(PathTest, AsksForAnAcknowledgementInTimeAndNotForEachDatagram)
 {
     for (int i = 0; i < 3; ++i)
     {

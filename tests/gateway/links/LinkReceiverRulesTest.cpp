@@ -52,7 +52,7 @@ protected:
 
 // Rule R1
 
-TEST_F(LinkReceiverRules, R1_data_for_another_life_is_answered_with_a_hello_only)
+TEST_F(LinkReceiverRules, R1_DataForAnotherLifeIsAnsweredWithAHelloOnly)
 {
     StoredFrame data = Data(1, {"1"});
     data.Fields.ReceiverLife -= 1;
@@ -70,7 +70,7 @@ TEST_F(LinkReceiverRules, R1_data_for_another_life_is_answered_with_a_hello_only
     EXPECT_EQ(a.Node->Counters().Stale, 1U);
 }
 
-TEST_F(LinkReceiverRules, R1_data_for_a_higher_life_makes_me_take_a_yet_higher_one_and_drop_the_sessions)
+TEST_F(LinkReceiverRules, R1_DataForAHigherLifeMakesMeTakeAYetHigherOneAndDropTheSessions)
 {
     OpenSession();
     StoredFrame data = Data(2, {"2"});
@@ -85,7 +85,7 @@ TEST_F(LinkReceiverRules, R1_data_for_a_higher_life_makes_me_take_a_yet_higher_o
     EXPECT_THAT(Texts(), IsEmpty()) << "the session is gone, and 1 has to come first";
 }
 
-TEST_F(LinkReceiverRules, hello_with_a_higher_life_of_mine_makes_me_take_a_yet_higher_one)
+TEST_F(LinkReceiverRules, HelloWithAHigherLifeOfMineMakesMeTakeAYetHigherOne)
 {
     OpenSession();
     b.KnownLife += 5;
@@ -98,7 +98,7 @@ TEST_F(LinkReceiverRules, hello_with_a_higher_life_of_mine_makes_me_take_a_yet_h
 
 // Rule R2
 
-TEST_F(LinkReceiverRules, R2_data_of_an_older_life_of_the_sender_is_answered_with_a_hello_only)
+TEST_F(LinkReceiverRules, R2_DataOfAnOlderLifeOfTheSenderIsAnsweredWithAHelloOnly)
 {
     OpenSession();
     a.TakeHellos();
@@ -113,7 +113,7 @@ TEST_F(LinkReceiverRules, R2_data_of_an_older_life_of_the_sender_is_answered_wit
 
 // Rule R3
 
-TEST_F(LinkReceiverRules, R3_opens_a_session_at_the_oldest_number_under_way)
+TEST_F(LinkReceiverRules, R3_OpensASessionAtTheOldestNumberUnderWay)
 {
     StoredFrame data = Data(41, {"41"});
     data.Fields.Data.Oldest = 41;
@@ -124,7 +124,7 @@ TEST_F(LinkReceiverRules, R3_opens_a_session_at_the_oldest_number_under_way)
     EXPECT_EQ(ack.Cumulative, 41U);
 }
 
-TEST_F(LinkReceiverRules, R3_opens_no_session_without_an_echo_of_my_clock)
+TEST_F(LinkReceiverRules, R3_OpensNoSessionWithoutAnEchoOfMyClock)
 {
     StoredFrame data = Data(1, {"1"});
     data.Fields.Echo.Clock += 1;
@@ -133,7 +133,7 @@ TEST_F(LinkReceiverRules, R3_opens_no_session_without_an_echo_of_my_clock)
     EXPECT_FALSE(Acknowledgement().Open);
 }
 
-TEST_F(LinkReceiverRules, R3_opens_no_session_with_an_echo_from_the_future)
+TEST_F(LinkReceiverRules, R3_OpensNoSessionWithAnEchoFromTheFuture)
 {
     StoredFrame data = Data(1, {"1"});
     data.Fields.Echo.Time = (a.Now + 1ns).count();
@@ -141,7 +141,7 @@ TEST_F(LinkReceiverRules, R3_opens_no_session_with_an_echo_from_the_future)
     EXPECT_THAT(Texts(), IsEmpty());
 }
 
-TEST_F(LinkReceiverRules, R3_a_late_datagram_of_another_life_does_not_replace_a_session_younger_than_it)
+TEST_F(LinkReceiverRules, R3_ALateDatagramOfAnotherLifeDoesNotReplaceASessionYoungerThanIt)
 {
     StoredFrame straggler = Data(1, {"old"});
     straggler.Fields.SenderLife += 1;  // a higher life, whose storage was lost afterwards
@@ -157,7 +157,7 @@ TEST_F(LinkReceiverRules, R3_a_late_datagram_of_another_life_does_not_replace_a_
     EXPECT_THAT(Texts(), IsEmpty()) << "a reading of the very moment of opening proves nothing";
 }
 
-TEST_F(LinkReceiverRules, R3_a_new_life_of_the_sender_replaces_the_session)
+TEST_F(LinkReceiverRules, R3_ANewLifeOfTheSenderReplacesTheSession)
 {
     OpenSession();
     b.Life += 1;
@@ -166,7 +166,7 @@ TEST_F(LinkReceiverRules, R3_a_new_life_of_the_sender_replaces_the_session)
     EXPECT_EQ(a.ReceiverCounters().SessionsOpened, 2U);
 }
 
-TEST_F(LinkReceiverRules, R3_a_new_session_knows_no_outcomes_of_the_old_one)
+TEST_F(LinkReceiverRules, R3_ANewSessionKnowsNoOutcomesOfTheOldOne)
 {
     OpenSession();
     b.Life += 1;
@@ -176,7 +176,7 @@ TEST_F(LinkReceiverRules, R3_a_new_session_knows_no_outcomes_of_the_old_one)
     EXPECT_EQ(Acknowledgement().Delivered, LinkBitmap{});
 }
 
-TEST_F(LinkReceiverRules, hello_of_a_peer_that_does_not_know_this_life_is_answered_at_once)
+TEST_F(LinkReceiverRules, HelloOfAPeerThatDoesNotKnowThisLifeIsAnsweredAtOnce)
 {
     a.Hear(b.Hello());
     a.Pass(30ms);
@@ -196,7 +196,7 @@ TEST_F(LinkReceiverRules, hello_of_a_peer_that_does_not_know_this_life_is_answer
 
 // Rule R4
 
-TEST_F(LinkReceiverRules, R4_a_repeated_message_is_acknowledged_only)
+TEST_F(LinkReceiverRules, R4_ARepeatedMessageIsAcknowledgedOnly)
 {
     OpenSession();
     a.Hear(Data(1, {"1"}));
@@ -219,7 +219,7 @@ TEST_F(LinkReceiverRules, Acknowledgements_go_in_frames_of_their_own_if_the_driv
     EXPECT_THAT(a.TakeDatas(), SizeIs(1));
 }
 
-TEST_F(LinkReceiverRules, R4_what_comes_after_a_gap_is_held_and_delivered_when_the_gap_is_filled)
+TEST_F(LinkReceiverRules, R4_WhatComesAfterAGapIsHeldAndDeliveredWhenTheGapIsFilled)
 {
     OpenSession();
     a.Hear(Data(3, {"3", "4"}));
@@ -233,7 +233,7 @@ TEST_F(LinkReceiverRules, R4_what_comes_after_a_gap_is_held_and_delivered_when_t
     EXPECT_THAT(Texts(), ElementsAre("2", "3", "4"));
 }
 
-TEST_F(LinkReceiverRules, R4_what_is_held_is_bounded_in_bytes)
+TEST_F(LinkReceiverRules, R4_WhatIsHeldIsBoundedInBytes)
 {
     LinkSettings settings;
     settings.ReorderBytes = 1000;
@@ -248,7 +248,7 @@ TEST_F(LinkReceiverRules, R4_what_is_held_is_bounded_in_bytes)
     EXPECT_EQ(node.ReceiverCounters().KeptBytes, 0U);
 }
 
-TEST_F(LinkReceiverRules, R4_what_is_held_on_all_links_is_bounded_in_bytes)
+TEST_F(LinkReceiverRules, R4_WhatIsHeldOnAllLinksIsBoundedInBytes)
 {
     LinkSettings settings;
     settings.ReorderBytesOfNode = 1000;
@@ -265,7 +265,7 @@ TEST_F(LinkReceiverRules, R4_what_is_held_on_all_links_is_bounded_in_bytes)
     EXPECT_EQ(node.ReceiverCounters("b", "q3").NotKept, 1U);
 }
 
-TEST_F(LinkReceiverRules, R4_what_was_held_is_as_old_as_it_is_when_it_is_delivered)
+TEST_F(LinkReceiverRules, R4_WhatWasHeldIsAsOldAsItIsWhenItIsDelivered)
 {
     OpenSession();
     StoredFrame data = Data(3, {"3"});
@@ -280,7 +280,7 @@ TEST_F(LinkReceiverRules, R4_what_was_held_is_as_old_as_it_is_when_it_is_deliver
     EXPECT_EQ(a.ReceiverCounters().HeldBackLate, 1U);
 }
 
-TEST_F(LinkReceiverRules, R4_what_was_held_for_less_than_its_life_is_delivered)
+TEST_F(LinkReceiverRules, R4_WhatWasHeldForLessThanItsLifeIsDelivered)
 {
     OpenSession();
     StoredFrame data = Data(3, {"3"});
@@ -291,7 +291,7 @@ TEST_F(LinkReceiverRules, R4_what_was_held_for_less_than_its_life_is_delivered)
     EXPECT_THAT(Texts(), ElementsAre("2", "3"));
 }
 
-TEST_F(LinkReceiverRules, R4_the_parts_of_a_large_message_are_put_together)
+TEST_F(LinkReceiverRules, R4_ThePartsOfALargeMessageArePutTogether)
 {
     OpenSession();
     a.Hear(b.Parts(2, {"abc", "def", "g"}, a.Now));
@@ -299,7 +299,7 @@ TEST_F(LinkReceiverRules, R4_the_parts_of_a_large_message_are_put_together)
     EXPECT_EQ(a.ReceiverCounters().Delivered, 2U);
 }
 
-TEST_F(LinkReceiverRules, R4_the_parts_of_a_large_message_are_put_together_in_their_order)
+TEST_F(LinkReceiverRules, R4_ThePartsOfALargeMessageArePutTogetherInTheirOrder)
 {
     OpenSession();
     StoredFrame parts = b.Parts(2, {"abc", "def", "g"}, a.Now);
@@ -311,7 +311,7 @@ TEST_F(LinkReceiverRules, R4_the_parts_of_a_large_message_are_put_together_in_th
     EXPECT_THAT(Texts(), ElementsAre("abcdefg"));
 }
 
-TEST_F(LinkReceiverRules, R4_a_large_message_of_another_size_than_was_said_is_refused)
+TEST_F(LinkReceiverRules, R4_ALargeMessageOfAnotherSizeThanWasSaidIsRefused)
 {
     OpenSession();
     StoredFrame longer = b.Parts(2, {"abc", "def"}, a.Now);
@@ -325,7 +325,7 @@ TEST_F(LinkReceiverRules, R4_a_large_message_of_another_size_than_was_said_is_re
     EXPECT_EQ(a.ReceiverCounters().RefusedUndecodable, 2U);
 }
 
-TEST_F(LinkReceiverRules, R4_a_message_larger_than_the_largest_is_refused_and_takes_no_memory)
+TEST_F(LinkReceiverRules, R4_AMessageLargerThanTheLargestIsRefusedAndTakesNoMemory)
 {
     LinkSettings settings;
     settings.LargestMessage = 5;
@@ -341,7 +341,7 @@ TEST_F(LinkReceiverRules, R4_a_message_larger_than_the_largest_is_refused_and_ta
     EXPECT_THAT(node.TakeDelivered(), IsEmpty());
 }
 
-TEST_F(LinkReceiverRules, R4_memory_is_taken_as_bytes_arrive_not_as_they_are_announced)
+TEST_F(LinkReceiverRules, R4_MemoryIsTakenAsBytesArriveNotAsTheyAreAnnounced)
 {
     OpenSession();
     StoredFrame parts = b.Parts(2, {"abc", "d"}, a.Now);
@@ -382,7 +382,7 @@ TEST_F(LinkReceiverRules,
     EXPECT_THAT(node.TakeDelivered(), SizeIs(3));
 }
 
-TEST_F(LinkReceiverRules, R4_types_are_known_by_the_numbers_that_were_said_with_their_names)
+TEST_F(LinkReceiverRules, R4_TypesAreKnownByTheNumbersThatWereSaidWithTheirNames)
 {
     OpenSession();
     StoredFrame named = Data(2, {"2"});
@@ -401,7 +401,7 @@ TEST_F(LinkReceiverRules, R4_types_are_known_by_the_numbers_that_were_said_with_
     EXPECT_EQ(a.ReceiverCounters().RefusedWrongType, 1U) << "a number that means nothing";
 }
 
-TEST_F(LinkReceiverRules, R4_a_link_whose_number_means_nothing_is_asked_for_its_queue)
+TEST_F(LinkReceiverRules, R4_ALinkWhoseNumberMeansNothingIsAskedForItsQueue)
 {
     a.Hear(b.Hello());
     StoredFrame data = Data(1, {"1"});
@@ -416,7 +416,7 @@ TEST_F(LinkReceiverRules, R4_a_link_whose_number_means_nothing_is_asked_for_its_
     EXPECT_THAT(Texts(), ElementsAre("1"));
 }
 
-TEST_F(LinkReceiverRules, R4_new_messages_behind_repeated_ones_in_a_datagram_are_delivered)
+TEST_F(LinkReceiverRules, R4_NewMessagesBehindRepeatedOnesInADatagramAreDelivered)
 {
     OpenSession();
     a.Hear(Data(1, {"1", "2", "3"}));
@@ -425,7 +425,7 @@ TEST_F(LinkReceiverRules, R4_new_messages_behind_repeated_ones_in_a_datagram_are
 
 // Rule R5
 
-TEST_F(LinkReceiverRules, R5_a_message_with_an_expiry_needs_an_echo_of_my_clock)
+TEST_F(LinkReceiverRules, R5_AMessageWithAnExpiryNeedsAnEchoOfMyClock)
 {
     OpenSession();
     StoredFrame data = Data(2, {"2"});
@@ -442,7 +442,7 @@ TEST_F(LinkReceiverRules, R5_a_message_with_an_expiry_needs_an_echo_of_my_clock)
 
 // Rule R6
 
-TEST_F(LinkReceiverRules, R6_a_message_that_may_have_expired_on_the_way_is_not_delivered)
+TEST_F(LinkReceiverRules, R6_AMessageThatMayHaveExpiredOnTheWayIsNotDelivered)
 {
     OpenSession();
     StoredFrame data = Data(2, {"2"});
@@ -458,7 +458,7 @@ TEST_F(LinkReceiverRules, R6_a_message_that_may_have_expired_on_the_way_is_not_d
     EXPECT_EQ(acks[0].Fields.Time, a.Now.count()) << "a fresh token";
 }
 
-TEST_F(LinkReceiverRules, R6_a_message_with_time_left_is_delivered)
+TEST_F(LinkReceiverRules, R6_AMessageWithTimeLeftIsDelivered)
 {
     OpenSession();
     StoredFrame data = Data(2, {"2"});
@@ -469,7 +469,7 @@ TEST_F(LinkReceiverRules, R6_a_message_with_time_left_is_delivered)
     EXPECT_THAT(Texts(), ElementsAre("2"));
 }
 
-TEST_F(LinkReceiverRules, R6_allows_for_the_drift_of_the_two_clocks)
+TEST_F(LinkReceiverRules, R6_AllowsForTheDriftOfTheTwoClocks)
 {
     OpenSession();
     StoredFrame data = Data(2, {"2"});
@@ -480,7 +480,7 @@ TEST_F(LinkReceiverRules, R6_allows_for_the_drift_of_the_two_clocks)
     EXPECT_THAT(Texts(), IsEmpty());
 }
 
-TEST_F(LinkReceiverRules, R6_a_skip_is_consumed_and_not_delivered)
+TEST_F(LinkReceiverRules, R6_ASkipIsConsumedAndNotDelivered)
 {
     OpenSession();
     StoredFrame data = Data(2, {"2", "3"});
@@ -495,7 +495,7 @@ TEST_F(LinkReceiverRules, R6_a_skip_is_consumed_and_not_delivered)
     EXPECT_EQ(acks[0].Ack().Refused[0], 0U);
 }
 
-TEST_F(LinkReceiverRules, R6_a_skip_of_several_parts_drops_what_was_there_of_the_message)
+TEST_F(LinkReceiverRules, R6_ASkipOfSeveralPartsDropsWhatWasThereOfTheMessage)
 {
     OpenSession();
     StoredFrame parts = b.Parts(2, {"abc", "def", "g"}, a.Now);
@@ -515,7 +515,7 @@ TEST_F(LinkReceiverRules, R6_a_skip_of_several_parts_drops_what_was_there_of_the
     EXPECT_EQ(a.ReceiverCounters().KeptBytes, 0U);
 }
 
-TEST_F(LinkReceiverRules, R6_a_skip_gives_the_memory_of_the_message_back)
+TEST_F(LinkReceiverRules, R6_ASkipGivesTheMemoryOfTheMessageBack)
 {
     OpenSession();
     StoredFrame parts = b.Parts(2, {"abc", "def", "g"}, a.Now);
@@ -528,7 +528,7 @@ TEST_F(LinkReceiverRules, R6_a_skip_gives_the_memory_of_the_message_back)
     EXPECT_EQ(a.ReceiverCounters().AssemblyBytes, 0U);
 }
 
-TEST_F(LinkReceiverRules, R3_a_session_that_is_dropped_gives_its_memory_back)
+TEST_F(LinkReceiverRules, R3_ASessionThatIsDroppedGivesItsMemoryBack)
 {
     OpenSession();
     StoredFrame parts = b.Parts(2, {"abc", "def", "g"}, a.Now);
@@ -544,7 +544,7 @@ TEST_F(LinkReceiverRules, R3_a_session_that_is_dropped_gives_its_memory_back)
 
 // Rule R7
 
-TEST_F(LinkReceiverRules, R7_a_full_queue_holds_the_stream_back_and_gives_credit_for_one_message_that_waits)
+TEST_F(LinkReceiverRules, R7_AFullQueueHoldsTheStreamBackAndGivesCreditForOneMessageThatWaits)
 {
     OpenSession();
     a.Answer = LocalQueueResult::Full;
@@ -558,7 +558,7 @@ TEST_F(LinkReceiverRules, R7_a_full_queue_holds_the_stream_back_and_gives_credit
     EXPECT_EQ(a.ReceiverCounters().HeldBackFull, 1U) << "what comes behind is not even tried";
 }
 
-TEST_F(LinkReceiverRules, R7_room_is_made_known)
+TEST_F(LinkReceiverRules, R7_RoomIsMadeKnown)
 {
     OpenSession();
     a.Answer = LocalQueueResult::Full;
@@ -581,7 +581,7 @@ TEST_F(LinkReceiverRules, R7_room_is_made_known)
     EXPECT_THAT(a.TakeAcks(), IsEmpty()) << "once is enough";
 }
 
-TEST_F(LinkReceiverRules, R7_what_waited_for_room_is_delivered_when_there_is_room)
+TEST_F(LinkReceiverRules, R7_WhatWaitedForRoomIsDeliveredWhenThereIsRoom)
 {
     OpenSession();
     a.Answer = LocalQueueResult::Full;
@@ -596,7 +596,7 @@ TEST_F(LinkReceiverRules, R7_what_waited_for_room_is_delivered_when_there_is_roo
     EXPECT_THAT(Texts(), ElementsAre("2", "3"));
 }
 
-TEST_F(LinkReceiverRules, R7_what_waited_for_room_is_tried_again_when_the_sender_asks)
+TEST_F(LinkReceiverRules, R7_WhatWaitedForRoomIsTriedAgainWhenTheSenderAsks)
 {
     OpenSession();
     a.Answer = LocalQueueResult::Full;
@@ -622,7 +622,7 @@ protected:
     }
 };
 
-TEST_F(LinkReceiverPreparation, R7_what_is_prepared_is_not_offered_again_before_it_is_ready)
+TEST_F(LinkReceiverPreparation, R7_WhatIsPreparedIsNotOfferedAgainBeforeItIsReady)
 {
     OpenSession();
     a.Offered.clear();
@@ -638,7 +638,7 @@ TEST_F(LinkReceiverPreparation, R7_what_is_prepared_is_not_offered_again_before_
     EXPECT_THAT(Texts(), IsEmpty());
 }
 
-TEST_F(LinkReceiverPreparation, R7_what_was_prepared_of_one_message_is_not_taken_for_another_of_its_size)
+TEST_F(LinkReceiverPreparation, R7_WhatWasPreparedOfOneMessageIsNotTakenForAnotherOfItsSize)
 {
     OpenSession();
     GiveOut(2, {"ab", "c"});
@@ -653,7 +653,7 @@ TEST_F(LinkReceiverPreparation, R7_what_was_prepared_of_one_message_is_not_taken
     EXPECT_THAT(Texts(), ElementsAre("def"));
 }
 
-TEST_F(LinkReceiverPreparation, R7_what_was_prepared_for_a_queue_that_is_full_now_is_kept_for_the_next_turn)
+TEST_F(LinkReceiverPreparation, R7_WhatWasPreparedForAQueueThatIsFullNowIsKeptForTheNextTurn)
 {
     OpenSession();
     GiveOut(2, {"ab", "c"});
@@ -665,7 +665,7 @@ TEST_F(LinkReceiverPreparation, R7_what_was_prepared_for_a_queue_that_is_full_no
     EXPECT_THAT(Texts(), ElementsAre("abc"));
 }
 
-TEST_F(LinkReceiverPreparation, R7_what_could_not_be_prepared_is_offered_again)
+TEST_F(LinkReceiverPreparation, R7_WhatCouldNotBePreparedIsOfferedAgain)
 {
     OpenSession();
     GiveOut(2, {"ab", "c"});
@@ -673,7 +673,7 @@ TEST_F(LinkReceiverPreparation, R7_what_could_not_be_prepared_is_offered_again)
     EXPECT_THAT(Texts(), ElementsAre("abc"));
 }
 
-TEST_F(LinkReceiverPreparation, R7_what_expires_while_it_is_prepared_is_not_delivered)
+TEST_F(LinkReceiverPreparation, R7_WhatExpiresWhileItIsPreparedIsNotDelivered)
 {
     OpenSession();
     GiveOut(2, {"ab", "c"});
@@ -688,7 +688,7 @@ TEST_F(LinkReceiverPreparation, R7_what_expires_while_it_is_prepared_is_not_deli
 
 // Rule R8
 
-TEST_F(LinkReceiverRules, R8_delivers_in_order_with_source_queue_and_type)
+TEST_F(LinkReceiverRules, R8_DeliversInOrderWithSourceQueueAndType)
 {
     a.Hear(Data(1, {"1", "2"}));
     a.Hear(Data(3, {"3"}));
@@ -697,7 +697,7 @@ TEST_F(LinkReceiverRules, R8_delivers_in_order_with_source_queue_and_type)
                             DeliveredMessage{"b", "q", "T", "3"}));
 }
 
-TEST_F(LinkReceiverRules, R8_passes_on_the_redelivered_mark)
+TEST_F(LinkReceiverRules, R8_PassesOnTheRedeliveredMark)
 {
     StoredFrame data = Data(1, {"1"});
     data.Items[0].Fields.Flags |= LinkFlagRedelivered;
@@ -705,7 +705,7 @@ TEST_F(LinkReceiverRules, R8_passes_on_the_redelivered_mark)
     EXPECT_THAT(a.TakeDelivered(), ElementsAre(DeliveredMessage{"b", "q", "T", "1", true}));
 }
 
-TEST_F(LinkReceiverRules, R8_combines_acknowledgements_for_two_milliseconds)
+TEST_F(LinkReceiverRules, R8_CombinesAcknowledgementsForTwoMilliseconds)
 {
     OpenSession();
     a.Hear(Data(2, {"2"}));
@@ -720,14 +720,14 @@ TEST_F(LinkReceiverRules, R8_combines_acknowledgements_for_two_milliseconds)
     EXPECT_EQ(acks[0].Ack().Credit, 256U) << "room for 1000, told up to the largest window";
 }
 
-TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_sixteen_messages)
+TEST_F(LinkReceiverRules, R8_AcknowledgesAtOnceAfterSixteenMessages)
 {
     OpenSession();
     a.Hear(Data(2, std::vector<std::string>(16, "m")));
     EXPECT_EQ(Acknowledgement().Cumulative, 17U);
 }
 
-TEST_F(LinkReceiverRules, R8_acknowledges_at_once_when_the_sender_asks)
+TEST_F(LinkReceiverRules, R8_AcknowledgesAtOnceWhenTheSenderAsks)
 {
     OpenSession();
     StoredFrame data = Data(2, {"2"});
@@ -736,7 +736,7 @@ TEST_F(LinkReceiverRules, R8_acknowledges_at_once_when_the_sender_asks)
     EXPECT_EQ(Acknowledgement().Cumulative, 2U);
 }
 
-TEST_F(LinkReceiverRules, R8_an_acknowledgement_goes_with_data_that_goes_anyway)
+TEST_F(LinkReceiverRules, R8_AnAcknowledgementGoesWithDataThatGoesAnyway)
 {
     a.Hear(Data(1, {"1"}));
     a.Enqueue("mine");
@@ -748,7 +748,7 @@ TEST_F(LinkReceiverRules, R8_an_acknowledgement_goes_with_data_that_goes_anyway)
     EXPECT_THAT(a.TakeAcks(), SizeIs(1)) << "that one";
 }
 
-TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_half_of_a_window_in_bytes)
+TEST_F(LinkReceiverRules, R8_AcknowledgesAtOnceAfterHalfOfAWindowInBytes)
 {
     OpenSession();
     a.Hear(Data(2, std::vector<std::string>(3, std::string(32 * 1024, 'm'))));
@@ -757,7 +757,7 @@ TEST_F(LinkReceiverRules, R8_acknowledges_at_once_after_half_of_a_window_in_byte
     EXPECT_EQ(Acknowledgement().Cumulative, 5U);
 }
 
-TEST_F(LinkReceiverRules, undeliverable_messages_are_consumed_and_the_sender_learns_of_it)
+TEST_F(LinkReceiverRules, UndeliverableMessagesAreConsumedAndTheSenderLearnsOfIt)
 {
     OpenSession();
     std::uint64_t sequence = 2;

@@ -149,12 +149,12 @@ std::vector<std::pair<LinkTime, std::string>> DeliveriesBeside(int deadPeers)
     return b.Delivered;
 }
 
-TEST(LinkScenarios, dead_peers_with_full_outboxes_delay_no_other_peer)
+TEST(LinkScenarios, DeadPeersWithFullOutboxesDelayNoOtherPeer)
 {
     EXPECT_EQ(DeliveriesBeside(20), DeliveriesBeside(0));
 }
 
-TEST(LinkScenarios, a_first_message_takes_three_ways_and_each_later_one_a_single_way)
+TEST(LinkScenarios, AFirstMessageTakesThreeWaysAndEachLaterOneASingleWay)
 {
     Network network;
     Network::Member &a = network.Add("a");
@@ -173,7 +173,7 @@ TEST(LinkScenarios, a_first_message_takes_three_ways_and_each_later_one_a_single
     EXPECT_EQ(a.DatasSent, 3) << "and nothing is sent twice";
 }
 
-TEST(LinkScenarios, two_live_nodes_with_one_name_are_noticed)
+TEST(LinkScenarios, TwoLiveNodesWithOneNameAreNoticed)
 {
     Network network;
     Network::Member &first = network.Add("a", 5ULL << 32);
@@ -189,7 +189,7 @@ TEST(LinkScenarios, two_live_nodes_with_one_name_are_noticed)
     EXPECT_TRUE(first.Node->NameInUseElsewhere() || second.Node->NameInUseElsewhere());
 }
 
-TEST(LinkScenarios, one_restart_with_lost_storage_raises_no_alarm)
+TEST(LinkScenarios, OneRestartWithLostStorageRaisesNoAlarm)
 {
     NodeUnderTest restarted({}, 2ULL << 32);
     PlayedPeer b;
@@ -199,7 +199,7 @@ TEST(LinkScenarios, one_restart_with_lost_storage_raises_no_alarm)
     EXPECT_FALSE(restarted.Node->NameInUseElsewhere());
 }
 
-TEST(LinkScenarios, a_hundred_seconds_without_a_path_lose_nothing_and_send_little)
+TEST(LinkScenarios, AHundredSecondsWithoutAPathLoseNothingAndSendLittle)
 {
     Network network;
     Network::Member &a = network.Add("a");
@@ -225,7 +225,7 @@ TEST(LinkScenarios, a_hundred_seconds_without_a_path_lose_nothing_and_send_littl
     EXPECT_THAT(a.Outcomes, testing::AllOf(SizeIs(901), Each(LinkOutcome::Delivered)));
 }
 
-TEST(LinkScenarios, thirty_percent_loss_resends_less_than_three_times_the_fresh_data)
+TEST(LinkScenarios, ThirtyPercentLossResendsLessThanThreeTimesTheFreshData)
 {
     Network network;
     unsigned random = 1;

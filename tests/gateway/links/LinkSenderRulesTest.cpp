@@ -61,7 +61,7 @@ protected:
 
 // Rule S1
 
-TEST_F(LinkSenderRules, S1_refuses_when_full_by_count_and_changes_nothing_else)
+TEST_F(LinkSenderRules, S1_RefusesWhenFullByCountAndChangesNothingElse)
 {
     a.Configure({.Capacity = 2});
     EXPECT_EQ(a.Enqueue("1"), 1U);
@@ -75,7 +75,7 @@ TEST_F(LinkSenderRules, S1_refuses_when_full_by_count_and_changes_nothing_else)
     EXPECT_EQ(a.Node->Describe(), before);
 }
 
-TEST_F(LinkSenderRules, S1_refuses_when_full_by_bytes_and_says_when_it_could_never_fit)
+TEST_F(LinkSenderRules, S1_RefusesWhenFullByBytesAndSaysWhenItCouldNeverFit)
 {
     a.Configure({.CapacityBytes = 10});
     EXPECT_NE(a.Enqueue("12345678"), 0U);
@@ -86,7 +86,7 @@ TEST_F(LinkSenderRules, S1_refuses_when_full_by_bytes_and_says_when_it_could_nev
     EXPECT_EQ(a.SenderCounters().RefusedTooLarge, 1U);
 }
 
-TEST_F(LinkSenderRules, S1_says_how_full_it_is_by_what_is_fuller)
+TEST_F(LinkSenderRules, S1_SaysHowFullItIsByWhatIsFuller)
 {
     a.Configure({.Capacity = 4, .CapacityBytes = 10});
     EXPECT_NE(a.Enqueue("1"), 0U);
@@ -95,7 +95,7 @@ TEST_F(LinkSenderRules, S1_says_how_full_it_is_by_what_is_fuller)
     EXPECT_EQ(a.SenderCounters().Fill, 0.8);
 }
 
-TEST_F(LinkSenderRules, S1_accepts_again_when_outcomes_have_made_room)
+TEST_F(LinkSenderRules, S1_AcceptsAgainWhenOutcomesHaveMadeRoom)
 {
     a.Configure({.Capacity = 1});
     Contact();
@@ -106,7 +106,7 @@ TEST_F(LinkSenderRules, S1_accepts_again_when_outcomes_have_made_room)
     EXPECT_NE(a.Enqueue("3"), 0U);
 }
 
-TEST_F(LinkSenderRules, S1_refuses_impossible_names)
+TEST_F(LinkSenderRules, S1_RefusesImpossibleNames)
 {
     EXPECT_EQ(a.Node->Enqueue("a", "q", "T", {}, a.Now).Refusal, LinkRefusal::BadName);
     EXPECT_EQ(a.Node->Enqueue("", "q", "T", {}, a.Now).Refusal, LinkRefusal::BadName);
@@ -118,7 +118,7 @@ TEST_F(LinkSenderRules, S1_refuses_impossible_names)
 
 // Rule S2
 
-TEST_F(LinkSenderRules, S2_sends_no_message_without_a_token_but_a_hello_that_asks_for_one)
+TEST_F(LinkSenderRules, S2_SendsNoMessageWithoutATokenButAHelloThatAsksForOne)
 {
     a.Enqueue("1");
     a.Live(1400ms);
@@ -126,7 +126,7 @@ TEST_F(LinkSenderRules, S2_sends_no_message_without_a_token_but_a_hello_that_ask
     EXPECT_THAT(a.TakeHellos(), SizeIs(8)) << "at 0, 40, 120 and 280 ms, then every quarter of a second";
 }
 
-TEST_F(LinkSenderRules, S2_says_nothing_while_nothing_waits)
+TEST_F(LinkSenderRules, S2_SaysNothingWhileNothingWaits)
 {
     a.Configure({.Expire = 100ms});
     a.Enqueue("1");
@@ -137,7 +137,7 @@ TEST_F(LinkSenderRules, S2_says_nothing_while_nothing_waits)
     EXPECT_THAT(a.TakeHellos(), IsEmpty());
 }
 
-TEST_F(LinkSenderRules, S2_asks_quickly_for_the_token_of_a_peer_that_has_restarted)
+TEST_F(LinkSenderRules, S2_AsksQuicklyForTheTokenOfAPeerThatHasRestarted)
 {
     Contact();
     a.Live(3s);
@@ -148,7 +148,7 @@ TEST_F(LinkSenderRules, S2_asks_quickly_for_the_token_of_a_peer_that_has_restart
     EXPECT_THAT(a.TakeHellos(), SizeIs(testing::Ge(4U)));
 }
 
-TEST_F(LinkSenderRules, S2_sends_the_first_message_as_soon_as_a_hello_brings_the_token)
+TEST_F(LinkSenderRules, S2_SendsTheFirstMessageAsSoonAsAHelloBringsTheToken)
 {
     a.Enqueue("1");
     a.Pass(0ms);
@@ -166,7 +166,7 @@ TEST_F(LinkSenderRules, S2_sends_the_first_message_as_soon_as_a_hello_brings_the
     EXPECT_EQ(sent[0].Queue, "q");
 }
 
-TEST_F(LinkSenderRules, S2_sends_only_the_first_message_as_a_probe_while_there_is_no_credit)
+TEST_F(LinkSenderRules, S2_SendsOnlyTheFirstMessageAsAProbeWhileThereIsNoCredit)
 {
     a.Hear(b.Hello());
     a.Enqueue("1");
@@ -175,7 +175,7 @@ TEST_F(LinkSenderRules, S2_sends_only_the_first_message_as_a_probe_while_there_i
     EXPECT_THAT(SentTexts(), ElementsAre("1"));
 }
 
-TEST_F(LinkSenderRules, S2_repeats_an_unanswered_first_message_as_any_lost_one_and_not_as_one_turned_away)
+TEST_F(LinkSenderRules, S2_RepeatsAnUnansweredFirstMessageAsAnyLostOneAndNotAsOneTurnedAway)
 {
     StoredFrame hello = b.Hello();
     hello.Fields.Echo = {PlayedPeer::ClockOfA, a.Now.count(), 0};
@@ -185,7 +185,7 @@ TEST_F(LinkSenderRules, S2_repeats_an_unanswered_first_message_as_any_lost_one_a
     EXPECT_GE(SentTexts().size(), 20U) << "each 20 ms: the timer of a quick path doubles twice";
 }
 
-TEST_F(LinkSenderRules, S2_sends_up_to_the_credit)
+TEST_F(LinkSenderRules, S2_SendsUpToTheCredit)
 {
     Contact(2);
     for (const char *text : {"2", "3", "4", "5"})
@@ -199,7 +199,7 @@ TEST_F(LinkSenderRules, S2_sends_up_to_the_credit)
     EXPECT_THAT(SentTexts(), ElementsAre("4"));
 }
 
-TEST_F(LinkSenderRules, S2_probes_with_the_first_message_when_the_credit_is_used_up)
+TEST_F(LinkSenderRules, S2_ProbesWithTheFirstMessageWhenTheCreditIsUsedUp)
 {
     Contact(0);
     a.Enqueue("2");
@@ -211,7 +211,7 @@ TEST_F(LinkSenderRules, S2_probes_with_the_first_message_when_the_credit_is_used
     EXPECT_LE(sent.size(), 20U);
 }
 
-TEST_F(LinkSenderRules, S2_resends_what_was_turned_away_only_when_credit_comes)
+TEST_F(LinkSenderRules, S2_ResendsWhatWasTurnedAwayOnlyWhenCreditComes)
 {
     Contact(3);
     for (const char *text : {"2", "3", "4"})
@@ -232,7 +232,7 @@ TEST_F(LinkSenderRules, S2_resends_what_was_turned_away_only_when_credit_comes)
     EXPECT_THAT(SentTexts(), ElementsAre("3", "4"));
 }
 
-TEST_F(LinkSenderRules, S2_does_not_resend_what_the_receiver_holds)
+TEST_F(LinkSenderRules, S2_DoesNotResendWhatTheReceiverHolds)
 {
     Contact();
     for (int i = 2; i <= 5; ++i)
@@ -252,7 +252,7 @@ TEST_F(LinkSenderRules, S2_does_not_resend_what_the_receiver_holds)
     EXPECT_THAT(a.TakeOutcomes(), IsEmpty()) << "what is held is not delivered yet";
 }
 
-TEST_F(LinkSenderRules, S2_resends_what_the_receiver_holds_no_more)
+TEST_F(LinkSenderRules, S2_ResendsWhatTheReceiverHoldsNoMore)
 {
     Contact();
     for (int i = 2; i <= 4; ++i)
@@ -268,7 +268,7 @@ TEST_F(LinkSenderRules, S2_resends_what_the_receiver_holds_no_more)
     EXPECT_THAT(SentTexts(), ElementsAre(Large(4)));
 }
 
-TEST_F(LinkSenderRules, S2_what_was_overtaken_is_lost_after_the_time_for_reordering_and_not_before)
+TEST_F(LinkSenderRules, S2_WhatWasOvertakenIsLostAfterTheTimeForReorderingAndNotBefore)
 {
     Contact();
     a.Enqueue("2");
@@ -294,7 +294,7 @@ TEST_F(LinkSenderRules, S2_what_was_overtaken_is_lost_after_the_time_for_reorder
     EXPECT_THAT(SentTexts(), IsEmpty()) << "nothing sent after it is known to have arrived";
 }
 
-TEST_F(LinkSenderRules, S2_what_a_peer_is_used_to_answer_late_is_not_sent_again_meanwhile)
+TEST_F(LinkSenderRules, S2_WhatAPeerIsUsedToAnswerLateIsNotSentAgainMeanwhile)
 {
     constexpr LinkTime held = 300ms;
     Contact();
@@ -321,7 +321,7 @@ TEST_F(LinkSenderRules, S2_what_a_peer_is_used_to_answer_late_is_not_sent_again_
     }
 }
 
-TEST_F(LinkSenderRules, S2_answers_that_each_take_longer_than_the_longest_backoff_are_waited_for)
+TEST_F(LinkSenderRules, S2_AnswersThatEachTakeLongerThanTheLongestBackoffAreWaitedFor)
 {
     Contact();
     a.Pass(5s);
@@ -341,7 +341,7 @@ TEST_F(LinkSenderRules, S2_answers_that_each_take_longer_than_the_longest_backof
     EXPECT_LE(sent, 2u) << "the last one, and once more after the longest backoff";
 }
 
-TEST_F(LinkSenderRules, S2_an_answer_that_echoes_a_later_frame_is_an_answer_and_no_reason_to_wait_for_long)
+TEST_F(LinkSenderRules, S2_AnAnswerThatEchoesALaterFrameIsAnAnswerAndNoReasonToWaitForLong)
 {
     Contact();
     a.Enqueue("2");
@@ -363,7 +363,7 @@ TEST_F(LinkSenderRules, S2_an_answer_that_echoes_a_later_frame_is_an_answer_and_
     EXPECT_THAT(SentTexts(), testing::Contains("3")) << "nobody answers: it is sent again in time";
 }
 
-TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_in_parts_unacknowledged)
+TEST_F(LinkSenderRules, S2_KeepsNoMoreThanTheWindowInPartsUnacknowledged)
 {
     LinkSettings settings;
     settings.MaxDatagram = 300;
@@ -388,7 +388,7 @@ TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_in_parts_unacknowledged
     EXPECT_EQ(most, LinkWindowParts - 1);
 }
 
-TEST_F(LinkSenderRules, S2_what_goes_along_once_more_leaves_room_for_what_is_new)
+TEST_F(LinkSenderRules, S2_WhatGoesAlongOnceMoreLeavesRoomForWhatIsNew)
 {
     LinkSettings settings;
     settings.MaxDatagram = 200;
@@ -434,7 +434,7 @@ TEST_F(LinkSenderRules, S2_what_goes_along_once_more_leaves_room_for_what_is_new
     EXPECT_GE(fresh, 2u);
 }
 
-TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_unacknowledged)
+TEST_F(LinkSenderRules, S2_KeepsNoMoreThanTheWindowUnacknowledged)
 {
     a.Configure({.Window = 3});
     Contact();
@@ -449,7 +449,7 @@ TEST_F(LinkSenderRules, S2_keeps_no_more_than_the_window_unacknowledged)
     EXPECT_THAT(SentTexts(), ElementsAre("5", "6"));
 }
 
-TEST_F(LinkSenderRules, S2_begins_with_four_datagrams_under_way)
+TEST_F(LinkSenderRules, S2_BeginsWithFourDatagramsUnderWay)
 {
     Contact();
     for (int i = 2; i <= 20; ++i)
@@ -463,7 +463,7 @@ TEST_F(LinkSenderRules, S2_begins_with_four_datagrams_under_way)
     EXPECT_THAT(a.TakeDatas(), SizeIs(1));
 }
 
-TEST_F(LinkSenderRules, S2_each_link_may_have_one_datagram_under_way_whatever_the_others_have)
+TEST_F(LinkSenderRules, S2_EachLinkMayHaveOneDatagramUnderWayWhateverTheOthersHave)
 {
     Contact();
     for (int i = 2; i <= 20; ++i)
@@ -477,7 +477,7 @@ TEST_F(LinkSenderRules, S2_each_link_may_have_one_datagram_under_way_whatever_th
     EXPECT_THAT(SentTexts(), ElementsAre("command"));
 }
 
-TEST_F(LinkSenderRules, S2_cuts_a_large_message_into_parts_that_fit_a_datagram)
+TEST_F(LinkSenderRules, S2_CutsALargeMessageIntoPartsThatFitADatagram)
 {
     Contact();
     std::string text;
@@ -509,7 +509,7 @@ TEST_F(LinkSenderRules, S2_cuts_a_large_message_into_parts_that_fit_a_datagram)
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(id, LinkOutcome::Delivered)));
 }
 
-TEST_F(LinkSenderRules, S2_says_the_queues_name_until_the_receiver_has_opened_a_session)
+TEST_F(LinkSenderRules, S2_SaysTheQueuesNameUntilTheReceiverHasOpenedASession)
 {
     a.Hear(b.Hello());
     a.Enqueue("1");
@@ -527,7 +527,7 @@ TEST_F(LinkSenderRules, S2_says_the_queues_name_until_the_receiver_has_opened_a_
     EXPECT_EQ(a.TakeDatas().at(0).Queue, "q");
 }
 
-TEST_F(LinkSenderRules, S2_says_a_types_name_until_the_receiver_has_a_message_with_it)
+TEST_F(LinkSenderRules, S2_SaysATypesNameUntilTheReceiverHasAMessageWithIt)
 {
     Contact();
     a.Node->Enqueue("b", "q", "Other", PayloadOf("2"), a.Now);
@@ -544,7 +544,7 @@ TEST_F(LinkSenderRules, S2_says_a_types_name_until_the_receiver_has_a_message_wi
     EXPECT_EQ(sent.at(0).Items.at(0).Fields.TypeNumber, 1U);
 }
 
-TEST_F(LinkSenderRules, S2_a_short_frame_goes_to_who_knows_this_life_and_clock)
+TEST_F(LinkSenderRules, S2_AShortFrameGoesToWhoKnowsThisLifeAndClock)
 {
     Contact();
     a.Enqueue("2");
@@ -563,7 +563,7 @@ TEST_F(LinkSenderRules, S2_a_short_frame_goes_to_who_knows_this_life_and_clock)
     EXPECT_FALSE(a.TakeDatas().at(0).Fields.Short) << "32 bits do not tell times of long ago";
 }
 
-TEST_F(LinkSenderRules, S2_packs_waiting_messages_up_to_the_datagram_size)
+TEST_F(LinkSenderRules, S2_PacksWaitingMessagesUpToTheDatagramSize)
 {
     LinkSettings settings;
     settings.MaxDatagram = 1000;
@@ -591,7 +591,7 @@ TEST_F(LinkSenderRules, S2_packs_waiting_messages_up_to_the_datagram_size)
     EXPECT_EQ(messages, 20U);
 }
 
-TEST_F(LinkSenderRules, S2_echoes_the_newest_token_and_how_long_it_was_held)
+TEST_F(LinkSenderRules, S2_EchoesTheNewestTokenAndHowLongItWasHeld)
 {
     Contact();
     a.Pass(30ms);
@@ -610,7 +610,7 @@ TEST_F(LinkSenderRules, S2_echoes_the_newest_token_and_how_long_it_was_held)
     EXPECT_EQ(sent[0].Fields.Echo.HeldFor, LinkTime(15ms).count());
 }
 
-TEST_F(LinkSenderRules, S2_resends_only_the_first_datagrams_worth_and_twice)
+TEST_F(LinkSenderRules, S2_ResendsOnlyTheFirstDatagramsWorthAndTwice)
 {
     Contact();
     for (int i = 0; i < 10; ++i)
@@ -625,7 +625,7 @@ TEST_F(LinkSenderRules, S2_resends_only_the_first_datagrams_worth_and_twice)
     EXPECT_THAT(resent, SizeIs(2)) << "after 0.2 and 0.4 s, 2 kB in all";
 }
 
-TEST_F(LinkSenderRules, S2_after_two_kilobytes_in_vain_only_asks_whether_anybody_hears)
+TEST_F(LinkSenderRules, S2_AfterTwoKilobytesInVainOnlyAsksWhetherAnybodyHears)
 {
     Contact();
     a.Enqueue(Large(0));
@@ -640,7 +640,7 @@ TEST_F(LinkSenderRules, S2_after_two_kilobytes_in_vain_only_asks_whether_anybody
     EXPECT_TRUE(questions.back().Fields.Ask);
 }
 
-TEST_F(LinkSenderRules, S2_an_answer_to_such_a_question_brings_the_datagram_at_once)
+TEST_F(LinkSenderRules, S2_AnAnswerToSuchAQuestionBringsTheDatagramAtOnce)
 {
     Contact();
     a.Enqueue(Large(0));
@@ -654,7 +654,7 @@ TEST_F(LinkSenderRules, S2_an_answer_to_such_a_question_brings_the_datagram_at_o
     EXPECT_THAT(SentTexts(), ElementsAre(Large(0)));
 }
 
-TEST_F(LinkSenderRules, S2_what_the_peer_had_before_is_no_answer_to_such_a_question)
+TEST_F(LinkSenderRules, S2_WhatThePeerHadBeforeIsNoAnswerToSuchAQuestion)
 {
     Contact();
     const LinkTime before = a.Now;
@@ -669,7 +669,7 @@ TEST_F(LinkSenderRules, S2_what_the_peer_had_before_is_no_answer_to_such_a_quest
     EXPECT_THAT(a.TakeDatas(), IsEmpty());
 }
 
-TEST_F(LinkSenderRules, S2_after_two_kilobytes_in_vain_small_messages_still_go_a_few_at_a_time)
+TEST_F(LinkSenderRules, S2_AfterTwoKilobytesInVainSmallMessagesStillGoAFewAtATime)
 {
     Contact();
     for (int i = 0; i < 100; ++i)
@@ -685,7 +685,7 @@ TEST_F(LinkSenderRules, S2_after_two_kilobytes_in_vain_small_messages_still_go_a
     EXPECT_THAT(datas.front().Items, SizeIs(3)) << "128 bytes";
 }
 
-TEST_F(LinkSenderRules, S2_after_the_resend_timer_new_messages_share_the_datagram_with_old_ones)
+TEST_F(LinkSenderRules, S2_AfterTheResendTimerNewMessagesShareTheDatagramWithOldOnes)
 {
     Contact();
     a.Enqueue(Numbered(2));
@@ -700,7 +700,7 @@ TEST_F(LinkSenderRules, S2_after_the_resend_timer_new_messages_share_the_datagra
     EXPECT_THAT(SentTexts(), ElementsAre("m2", "m3"));
 }
 
-TEST_F(LinkSenderRules, S2_a_hello_ends_the_wait_of_a_backed_off_timer)
+TEST_F(LinkSenderRules, S2_AHelloEndsTheWaitOfABackedOffTimer)
 {
     Contact();
     a.Enqueue("2");
@@ -717,7 +717,7 @@ TEST_F(LinkSenderRules, S2_a_hello_ends_the_wait_of_a_backed_off_timer)
     EXPECT_THAT(SentTexts(), ElementsAre("2"));
 }
 
-TEST_F(LinkSenderRules, S2_a_silent_peer_gets_a_slow_hello_and_nothing_else)
+TEST_F(LinkSenderRules, S2_ASilentPeerGetsASlowHelloAndNothingElse)
 {
     Contact();
     a.Enqueue("2");
@@ -732,7 +732,7 @@ TEST_F(LinkSenderRules, S2_a_silent_peer_gets_a_slow_hello_and_nothing_else)
     EXPECT_THAT(SentTexts(), ElementsAre("2"));
 }
 
-TEST_F(LinkSenderRules, S2_a_peer_with_nothing_pending_costs_nothing_until_something_is_enqueued)
+TEST_F(LinkSenderRules, S2_APeerWithNothingPendingCostsNothingUntilSomethingIsEnqueued)
 {
     Contact();
     a.Live(15s);
@@ -745,7 +745,7 @@ TEST_F(LinkSenderRules, S2_a_peer_with_nothing_pending_costs_nothing_until_somet
 
 // Rule S3
 
-TEST_F(LinkSenderRules, S3_a_message_that_expires_after_it_was_sent_is_sent_as_skip_with_its_number)
+TEST_F(LinkSenderRules, S3_AMessageThatExpiresAfterItWasSentIsSentAsSkipWithItsNumber)
 {
     a.Configure({.Expire = 1s});
     Contact();
@@ -765,7 +765,7 @@ TEST_F(LinkSenderRules, S3_a_message_that_expires_after_it_was_sent_is_sent_as_s
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(id, LinkOutcome::Expired)));
 }
 
-TEST_F(LinkSenderRules, S3_a_message_that_expires_before_it_was_sent_ends_at_once)
+TEST_F(LinkSenderRules, S3_AMessageThatExpiresBeforeItWasSentEndsAtOnce)
 {
     a.Configure({.Expire = 1s});
     const std::uint64_t id = a.Enqueue("1");
@@ -777,7 +777,7 @@ TEST_F(LinkSenderRules, S3_a_message_that_expires_before_it_was_sent_ends_at_onc
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(id, LinkOutcome::Expired)));
 }
 
-TEST_F(LinkSenderRules, S3_of_a_message_that_expires_half_sent_only_one_skip_is_sent_for_all_its_parts)
+TEST_F(LinkSenderRules, S3_OfAMessageThatExpiresHalfSentOnlyOneSkipIsSentForAllItsParts)
 {
     a.Configure({.Expire = 1s});
     Contact();
@@ -799,7 +799,7 @@ TEST_F(LinkSenderRules, S3_of_a_message_that_expires_half_sent_only_one_skip_is_
 
 // Rule S4
 
-TEST_F(LinkSenderRules, S4_each_acknowledged_message_gets_the_outcome_of_its_bit)
+TEST_F(LinkSenderRules, S4_EachAcknowledgedMessageGetsTheOutcomeOfItsBit)
 {
     Contact();
     for (const char *text : {"2", "3", "4", "5"})
@@ -813,7 +813,7 @@ TEST_F(LinkSenderRules, S4_each_acknowledged_message_gets_the_outcome_of_its_bit
     EXPECT_EQ(a.SenderCounters().Pending, 1U);
 }
 
-TEST_F(LinkSenderRules, S4_a_repeated_or_overtaken_acknowledgement_changes_no_outcome)
+TEST_F(LinkSenderRules, S4_ARepeatedOrOvertakenAcknowledgementChangesNoOutcome)
 {
     Contact();
     a.Enqueue("2");
@@ -828,7 +828,7 @@ TEST_F(LinkSenderRules, S4_a_repeated_or_overtaken_acknowledgement_changes_no_ou
     EXPECT_THAT(a.TakeOutcomes(), IsEmpty());
 }
 
-TEST_F(LinkSenderRules, S4_an_overtaken_acknowledgement_gives_no_credit)
+TEST_F(LinkSenderRules, S4_AnOvertakenAcknowledgementGivesNoCredit)
 {
     Contact(100);
     const StoredFrame old = b.Ack(1, 100);
@@ -840,7 +840,7 @@ TEST_F(LinkSenderRules, S4_an_overtaken_acknowledgement_gives_no_credit)
     EXPECT_THAT(SentTexts().size(), testing::Le(1U)) << "a probe at most";
 }
 
-TEST_F(LinkSenderRules, S4_an_acknowledgement_of_another_stream_only_brings_a_token)
+TEST_F(LinkSenderRules, S4_AnAcknowledgementOfAnotherStreamOnlyBringsAToken)
 {
     a.Hear(b.Hello());
     a.Enqueue("1");
@@ -852,7 +852,7 @@ TEST_F(LinkSenderRules, S4_an_acknowledgement_of_another_stream_only_brings_a_to
     EXPECT_EQ(a.SenderCounters().Pending, 1U);
 }
 
-TEST_F(LinkSenderRules, S4_measures_the_round_trip_by_the_echoed_time_less_what_it_was_held)
+TEST_F(LinkSenderRules, S4_MeasuresTheRoundTripByTheEchoedTimeLessWhatItWasHeld)
 {
     Contact();
     for (int i = 2; i < 40; ++i)
@@ -874,7 +874,7 @@ TEST_F(LinkSenderRules, S4_measures_the_round_trip_by_the_echoed_time_less_what_
     EXPECT_THAT(a.TakeDatas(), IsEmpty()) << "not resent before the round trip is over";
 }
 
-TEST_F(LinkSenderRules, S4_an_echo_that_cannot_be_measures_nothing)
+TEST_F(LinkSenderRules, S4_AnEchoThatCannotBeMeasuresNothing)
 {
     Contact();
     a.Enqueue("m");
@@ -885,7 +885,7 @@ TEST_F(LinkSenderRules, S4_an_echo_that_cannot_be_measures_nothing)
     EXPECT_EQ(a.SenderCounters().RoundTrip, 0ns);
 }
 
-TEST_F(LinkSenderRules, S4_learns_a_round_trip_longer_than_the_timer)
+TEST_F(LinkSenderRules, S4_LearnsARoundTripLongerThanTheTimer)
 {
     Contact();
     std::uint64_t acknowledged = 1;
@@ -907,7 +907,7 @@ TEST_F(LinkSenderRules, S4_learns_a_round_trip_longer_than_the_timer)
 
 // Rule S5
 
-TEST_F(LinkSenderRules, S5_a_receiver_in_a_new_life_puts_what_was_sent_in_doubt_and_continues_with_the_rest)
+TEST_F(LinkSenderRules, S5_AReceiverInANewLifePutsWhatWasSentInDoubtAndContinuesWithTheRest)
 {
     Contact(1);
     a.Enqueue("2");
@@ -929,7 +929,7 @@ TEST_F(LinkSenderRules, S5_a_receiver_in_a_new_life_puts_what_was_sent_in_doubt_
     EXPECT_EQ(a.Node->Counters().PeerRestarts, 1U);
 }
 
-TEST_F(LinkSenderRules, S5_a_hello_tells_of_the_new_life_as_well)
+TEST_F(LinkSenderRules, S5_AHelloTellsOfTheNewLifeAsWell)
 {
     Contact();
     a.Enqueue("2");
@@ -939,7 +939,7 @@ TEST_F(LinkSenderRules, S5_a_hello_tells_of_the_new_life_as_well)
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(2, LinkOutcome::InDoubt)));
 }
 
-TEST_F(LinkSenderRules, S5_a_new_life_that_something_else_heard_of_gets_nothing_before_the_links_know_it)
+TEST_F(LinkSenderRules, S5_ANewLifeThatSomethingElseHeardOfGetsNothingBeforeTheLinksKnowIt)
 {
     Contact();
     a.Enqueue("2");
@@ -953,7 +953,7 @@ TEST_F(LinkSenderRules, S5_a_new_life_that_something_else_heard_of_gets_nothing_
     EXPECT_EQ(a.SenderCounters().Pending, 1U) << "what was not";
 }
 
-TEST_F(LinkSenderRules, S5_what_something_else_heard_of_an_older_life_changes_nothing)
+TEST_F(LinkSenderRules, S5_WhatSomethingElseHeardOfAnOlderLifeChangesNothing)
 {
     Contact();
     a.Enqueue("2");
@@ -962,7 +962,7 @@ TEST_F(LinkSenderRules, S5_what_something_else_heard_of_an_older_life_changes_no
     EXPECT_EQ(a.SenderCounters().InDoubt, 0U);
 }
 
-TEST_F(LinkSenderRules, S5_a_message_that_was_sent_in_part_is_sent_again_from_its_beginning)
+TEST_F(LinkSenderRules, S5_AMessageThatWasSentInPartIsSentAgainFromItsBeginning)
 {
     Contact();
     const std::string text(20000, 'x');
@@ -982,7 +982,7 @@ TEST_F(LinkSenderRules, S5_a_message_that_was_sent_in_part_is_sent_again_from_it
     EXPECT_NE(id, 0U);
 }
 
-TEST_F(LinkSenderRules, S5_the_credit_of_the_old_life_is_forgotten)
+TEST_F(LinkSenderRules, S5_TheCreditOfTheOldLifeIsForgotten)
 {
     Contact(100);
     b.Life += 1;
@@ -993,7 +993,7 @@ TEST_F(LinkSenderRules, S5_the_credit_of_the_old_life_is_forgotten)
     EXPECT_THAT(SentTexts(), ElementsAre("2"));
 }
 
-TEST_F(LinkSenderRules, S5_the_clock_of_the_new_life_may_read_less_than_that_of_the_old_one)
+TEST_F(LinkSenderRules, S5_TheClockOfTheNewLifeMayReadLessThanThatOfTheOldOne)
 {
     Contact(100);
     b.Life += 1;
@@ -1010,7 +1010,7 @@ TEST_F(LinkSenderRules, S5_the_clock_of_the_new_life_may_read_less_than_that_of_
     EXPECT_THAT(SentTexts(), ElementsAre("3", "4"));
 }
 
-TEST_F(LinkSenderRules, S5_a_queue_that_opted_in_gets_what_was_in_doubt_again_marked_and_in_order)
+TEST_F(LinkSenderRules, S5_AQueueThatOptedInGetsWhatWasInDoubtAgainMarkedAndInOrder)
 {
     a.Configure({.RedeliverInDoubt = true});
     Contact(2);
@@ -1039,7 +1039,7 @@ TEST_F(LinkSenderRules, S5_a_queue_that_opted_in_gets_what_was_in_doubt_again_ma
                                               Pair(4, LinkOutcome::Delivered)));
 }
 
-TEST_F(LinkSenderRules, S5_an_acknowledgement_of_an_older_life_is_ignored_and_answered_with_a_hello)
+TEST_F(LinkSenderRules, S5_AnAcknowledgementOfAnOlderLifeIsIgnoredAndAnsweredWithAHello)
 {
     Contact();
     a.Enqueue("2");
@@ -1058,7 +1058,7 @@ TEST_F(LinkSenderRules, S5_an_acknowledgement_of_an_older_life_is_ignored_and_an
 
 // Rule S6
 
-TEST_F(LinkSenderRules, S6_a_peer_that_knows_a_higher_life_of_mine_makes_me_take_a_yet_higher_one)
+TEST_F(LinkSenderRules, S6_APeerThatKnowsAHigherLifeOfMineMakesMeTakeAYetHigherOne)
 {
     Contact(1);
     a.Enqueue("2");
@@ -1079,7 +1079,7 @@ TEST_F(LinkSenderRules, S6_a_peer_that_knows_a_higher_life_of_mine_makes_me_take
     EXPECT_EQ(sent[0].Fields.Data.Oldest, 3U);
 }
 
-TEST_F(LinkSenderRules, S6_raises_the_alarm_when_it_repeats)
+TEST_F(LinkSenderRules, S6_RaisesTheAlarmWhenItRepeats)
 {
     for (int i = 0; i < 3; ++i)
     {
@@ -1092,7 +1092,7 @@ TEST_F(LinkSenderRules, S6_raises_the_alarm_when_it_repeats)
     EXPECT_EQ(a.Node->Counters().Raises, 3U);
 }
 
-TEST_F(LinkSenderRules, S6_a_foolish_peer_cannot_have_all_sessions_dropped_again_and_again)
+TEST_F(LinkSenderRules, S6_AFoolishPeerCannotHaveAllSessionsDroppedAgainAndAgain)
 {
     Contact(1);
     const LinkTime start = a.Now;
@@ -1109,7 +1109,7 @@ TEST_F(LinkSenderRules, S6_a_foolish_peer_cannot_have_all_sessions_dropped_again
     EXPECT_EQ(a.Node->Counters().Raises, 2U) << "what is still so after the gap is heeded";
 }
 
-TEST_F(LinkSenderRules, S6_one_false_hello_does_not_use_up_the_numbers_of_later_lives)
+TEST_F(LinkSenderRules, S6_OneFalseHelloDoesNotUseUpTheNumbersOfLaterLives)
 {
     Contact(1);
     const std::uint64_t before = a.Node->Incarnation();
@@ -1122,7 +1122,7 @@ TEST_F(LinkSenderRules, S6_one_false_hello_does_not_use_up_the_numbers_of_later_
     EXPECT_GT(a.Node->Incarnation(), b.KnownLife) << "a number that a life could have had";
 }
 
-TEST_F(LinkSenderRules, S6_an_incarnation_of_a_peer_that_no_node_can_have_is_not_believed)
+TEST_F(LinkSenderRules, S6_AnIncarnationOfAPeerThatNoNodeCanHaveIsNotBelieved)
 {
     Contact();
     PlayedPeer forger;
@@ -1135,7 +1135,7 @@ TEST_F(LinkSenderRules, S6_an_incarnation_of_a_peer_that_no_node_can_have_is_not
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(id, LinkOutcome::Delivered)));
 }
 
-TEST_F(LinkSenderRules, S6_an_incarnation_of_a_peer_above_all_clocks_is_believed_if_the_peer_hears_this_node)
+TEST_F(LinkSenderRules, S6_AnIncarnationOfAPeerAboveAllClocksIsBelievedIfThePeerHearsThisNode)
 {
     PlayedPeer late;
     late.Life = (static_cast<std::uint64_t>(LinkLargestClaim) + 1) << 32;
@@ -1151,7 +1151,7 @@ TEST_F(LinkSenderRules, S6_an_incarnation_of_a_peer_above_all_clocks_is_believed
     EXPECT_THAT(SentTexts(), ElementsAre("1"));
 }
 
-TEST_F(LinkSenderRules, S6_hellos_to_a_peer_that_does_not_make_sense_of_this_node_become_seldom)
+TEST_F(LinkSenderRules, S6_HellosToAPeerThatDoesNotMakeSenseOfThisNodeBecomeSeldom)
 {
     Contact();
     b.KnownLife -= 1;
@@ -1176,7 +1176,7 @@ TEST_F(LinkSenderRules, S6_hellos_to_a_peer_that_does_not_make_sense_of_this_nod
 
 // Rule S7
 
-TEST_F(LinkSenderRules, S7_a_message_that_expires_while_the_peer_is_silent_is_in_doubt_and_gives_up_its_place)
+TEST_F(LinkSenderRules, S7_AMessageThatExpiresWhileThePeerIsSilentIsInDoubtAndGivesUpItsPlace)
 {
     a.Configure({.Capacity = 1, .Expire = 1s});
     Contact();
@@ -1192,7 +1192,7 @@ TEST_F(LinkSenderRules, S7_a_message_that_expires_while_the_peer_is_silent_is_in
     EXPECT_NE(a.Enqueue("3"), 0U);
 }
 
-TEST_F(LinkSenderRules, S7_a_message_that_expires_half_sent_while_the_peer_is_silent_has_expired)
+TEST_F(LinkSenderRules, S7_AMessageThatExpiresHalfSentWhileThePeerIsSilentHasExpired)
 {
     a.Configure({.Expire = 15s});
     Contact();
@@ -1201,7 +1201,7 @@ TEST_F(LinkSenderRules, S7_a_message_that_expires_half_sent_while_the_peer_is_si
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(id, LinkOutcome::Expired)));
 }
 
-TEST_F(LinkSenderRules, S7_the_numbers_of_a_message_that_was_given_up_are_skipped_when_the_peer_returns)
+TEST_F(LinkSenderRules, S7_TheNumbersOfAMessageThatWasGivenUpAreSkippedWhenThePeerReturns)
 {
     a.Configure({.Expire = 1s});
     Contact();
@@ -1220,7 +1220,7 @@ TEST_F(LinkSenderRules, S7_the_numbers_of_a_message_that_was_given_up_are_skippe
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(next, LinkOutcome::Delivered))) << "one outcome each";
 }
 
-TEST_F(LinkSenderRules, S7_a_message_that_was_given_up_has_no_second_outcome_when_the_peer_restarts)
+TEST_F(LinkSenderRules, S7_AMessageThatWasGivenUpHasNoSecondOutcomeWhenThePeerRestarts)
 {
     for (const bool redeliver : {false, true})
     {
@@ -1239,7 +1239,7 @@ TEST_F(LinkSenderRules, S7_a_message_that_was_given_up_has_no_second_outcome_whe
     }
 }
 
-TEST_F(LinkSenderRules, close_gives_every_pending_message_an_outcome)
+TEST_F(LinkSenderRules, CloseGivesEveryPendingMessageAnOutcome)
 {
     Contact(1);
     a.Enqueue("2");

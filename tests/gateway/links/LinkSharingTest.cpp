@@ -48,7 +48,7 @@ protected:
 
 // Room
 
-TEST_F(LinkSharing, of_a_full_queue_serves_the_senders_in_turn)
+TEST_F(LinkSharing, OfAFullQueueServesTheSendersInTurn)
 {
     a.Places = 0;
     for (const std::string name : {"b", "m", "z"})
@@ -68,7 +68,7 @@ TEST_F(LinkSharing, of_a_full_queue_serves_the_senders_in_turn)
     EXPECT_THAT(Texts(), ElementsAre("m2", "z2", "b3", "m3", "z3"));
 }
 
-TEST_F(LinkSharing, of_the_room_of_a_queue_tells_each_waiting_sender_its_share)
+TEST_F(LinkSharing, OfTheRoomOfAQueueTellsEachWaitingSenderItsShare)
 {
     a.Places = 0;
     a.RoomLeft = 0;
@@ -93,7 +93,7 @@ TEST_F(LinkSharing, of_the_room_of_a_queue_tells_each_waiting_sender_its_share)
     }
 }
 
-TEST_F(LinkSharing, of_a_full_queue_passes_over_senders_that_have_nothing)
+TEST_F(LinkSharing, OfAFullQueuePassesOverSendersThatHaveNothing)
 {
     a.Places = 0;
     a.Hear(From("b", 1, {"b1", "b2"}));
@@ -121,7 +121,7 @@ StoredFrame FirstHalf(PlayedPeer &b, std::uint64_t first, LinkTime now)
     return frame;
 }
 
-TEST_F(LinkSharing, of_memory_does_not_bar_a_link_whose_message_expired_for_want_of_it)
+TEST_F(LinkSharing, OfMemoryDoesNotBarALinkWhoseMessageExpiredForWantOfIt)
 {
     NodeUnderTest node(LittleMemory());
     node.Hear(On(1, FirstHalf(b, 1, node.Now)));
@@ -138,7 +138,7 @@ TEST_F(LinkSharing, of_memory_does_not_bar_a_link_whose_message_expired_for_want
     EXPECT_EQ(node.TakeDelivered().size(), 2U);
 }
 
-TEST_F(LinkSharing, of_memory_takes_it_back_when_the_life_of_the_source_is_over)
+TEST_F(LinkSharing, OfMemoryTakesItBackWhenTheLifeOfTheSourceIsOver)
 {
     a.Hear(On(1, FirstHalf(b, 1, a.Now)));
     a.Hear(On(2, b.Data(1, {"1"}, a.Now)));
@@ -151,7 +151,7 @@ TEST_F(LinkSharing, of_memory_takes_it_back_when_the_life_of_the_source_is_over)
     EXPECT_EQ(a.ReceiverCounters("b", "q2").KeptBytes, 0U);
 }
 
-TEST_F(LinkSharing, of_memory_keeps_what_is_complete_when_the_life_of_the_source_is_over)
+TEST_F(LinkSharing, OfMemoryKeepsWhatIsCompleteWhenTheLifeOfTheSourceIsOver)
 {
     a.Places = 0;
     a.Hear(b.Parts(1, {"abcdef", "ghijkl"}, a.Now));
@@ -163,7 +163,7 @@ TEST_F(LinkSharing, of_memory_keeps_what_is_complete_when_the_life_of_the_source
     EXPECT_THAT(Texts(), ElementsAre("abcdefghijkl"));
 }
 
-TEST_F(LinkSharing, of_memory_takes_back_what_waits_for_a_gap_when_the_source_is_silent)
+TEST_F(LinkSharing, OfMemoryTakesBackWhatWaitsForAGapWhenTheSourceIsSilent)
 {
     a.Hear(From("b", 1, {"1"}));
     a.Hear(From("b", 3, {"3"}));
@@ -177,7 +177,7 @@ TEST_F(LinkSharing, of_memory_takes_back_what_waits_for_a_gap_when_the_source_is
     EXPECT_THAT(Texts(), ElementsAre("2", "3")) << "the sender sends again what was dropped";
 }
 
-TEST_F(LinkSharing, of_memory_lets_a_message_grow_in_place_of_one_that_has_long_stalled)
+TEST_F(LinkSharing, OfMemoryLetsAMessageGrowInPlaceOfOneThatHasLongStalled)
 {
     NodeUnderTest node(LittleMemory());
     node.Hear(On(1, FirstHalf(b, 1, node.Now)));
@@ -197,7 +197,7 @@ TEST_F(LinkSharing, of_memory_lets_a_message_grow_in_place_of_one_that_has_long_
 
 // Queues that the node does not accept
 
-TEST_F(LinkSharing, refuses_what_is_for_queues_that_are_not_accepted_without_remembering_them)
+TEST_F(LinkSharing, RefusesWhatIsForQueuesThatAreNotAcceptedWithoutRememberingThem)
 {
     for (std::uint32_t link = 1; link <= 300; ++link)
     {
@@ -221,7 +221,7 @@ TEST_F(LinkSharing, refuses_what_is_for_queues_that_are_not_accepted_without_rem
     EXPECT_THAT(a.TakeDelivered(), IsEmpty());
 }
 
-TEST_F(LinkSharing, refuses_messages_of_types_that_are_not_accepted_and_does_not_offer_them)
+TEST_F(LinkSharing, RefusesMessagesOfTypesThatAreNotAcceptedAndDoesNotOfferThem)
 {
     StoredFrame data = From("b", 1, {"x"});
     data.Items[0].Type = NodeUnderTest::NoType;
@@ -234,7 +234,7 @@ TEST_F(LinkSharing, refuses_messages_of_types_that_are_not_accepted_and_does_not
 
 // Datagrams
 
-TEST_F(LinkSharing, of_datagrams_leaves_acknowledgements_that_have_no_room_for_the_next_one)
+TEST_F(LinkSharing, OfDatagramsLeavesAcknowledgementsThatHaveNoRoomForTheNextOne)
 {
     LinkSettings settings;
     settings.MaxDatagram = 300;

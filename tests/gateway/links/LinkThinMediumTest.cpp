@@ -58,7 +58,7 @@ LinkTime TimeOfThreePictures(ThinMedium &medium)
     return medium.Now - start;
 }
 
-TEST(ThinMedium, three_pictures_at_250_kbit_take_what_the_medium_takes)
+TEST(ThinMedium, ThreePicturesAt250KbitTakeWhatTheMediumTakes)
 {
     ThinMedium medium;
     const LinkTime took = TimeOfThreePictures(medium);
@@ -70,14 +70,14 @@ TEST(ThinMedium, three_pictures_at_250_kbit_take_what_the_medium_takes)
 }
 
 // Measures the overhead of the protocol alone: the pictures take 19.2 s.
-TEST(ThinMedium, three_pictures_whose_headers_cost_nothing_take_21_seconds_at_most)
+TEST(ThinMedium, ThreePicturesWhoseHeadersCostNothingTake21SecondsAtMost)
 {
     ThinMedium medium(0);
     EXPECT_LE(TimeOfThreePictures(medium), 21s);
     EXPECT_LE(medium.LongestWait, 300ms);
 }
 
-TEST(ThinMedium, thirty_messages_of_500_bytes_a_second_arrive_within_two_seconds_at_250_kbit)
+TEST(ThinMedium, ThirtyMessagesOf500BytesASecondArriveWithinTwoSecondsAt250Kbit)
 {
     ThinMedium medium;
     medium.BitsPerSecond = 250e3;
@@ -105,7 +105,7 @@ class LossTest : public ::testing::TestWithParam<Loss>
 {
 };
 
-TEST_P(LossTest, commands_are_delivered_soon)
+TEST_P(LossTest, CommandsAreDeliveredSoon)
 {
     ThinMedium medium;
     medium.Loss = GetParam().Part;
@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(ThinMedium, LossTest,
                                            Loss{0.2, 200, 150ms}, Loss{0.2, 500, 150ms},
                                            Loss{0.4, 50, 600ms}));
 
-TEST(ThinMedium, a_satellites_round_trip_leaves_most_of_the_medium_usable)
+TEST(ThinMedium, ASatellitesRoundTripLeavesMostOfTheMediumUsable)
 {
     for (const double rate : {250e3, 1e6})
     {
@@ -143,7 +143,7 @@ TEST(ThinMedium, a_satellites_round_trip_leaves_most_of_the_medium_usable)
 
 // The number of messages that may be under way limits the link, not the window. Sent in bursts, as the
 // window allows, they would overflow the buffer and then leave it empty.
-TEST(ThinMedium, small_messages_on_a_far_and_wide_medium_are_spread_over_the_round_trip)
+TEST(ThinMedium, SmallMessagesOnAFarAndWideMediumAreSpreadOverTheRoundTrip)
 {
     ThinMedium medium;
     medium.BitsPerSecond = 5e6;
@@ -157,7 +157,7 @@ TEST(ThinMedium, small_messages_on_a_far_and_wide_medium_are_spread_over_the_rou
     EXPECT_GE(static_cast<double>(medium.B.DeliveredBytes) * 8, 0.5 * 5e6 * 60);
 }
 
-TEST(ThinMedium, small_messages_have_most_of_what_a_satellite_carries)
+TEST(ThinMedium, SmallMessagesHaveMostOfWhatASatelliteCarries)
 {
     for (const double rate : {250e3, 1e6})
     {
@@ -171,7 +171,7 @@ TEST(ThinMedium, small_messages_have_most_of_what_a_satellite_carries)
     }
 }
 
-TEST(ThinMedium, an_idle_pair_says_nothing_whatever_the_round_trip)
+TEST(ThinMedium, AnIdlePairSaysNothingWhateverTheRoundTrip)
 {
     for (const LinkTime delay : {LinkTime(5ms), LinkTime(300ms)})
     {
@@ -186,7 +186,7 @@ TEST(ThinMedium, an_idle_pair_says_nothing_whatever_the_round_trip)
     }
 }
 
-TEST(ThinMedium, a_medium_that_becomes_ten_times_slower_and_returns_is_followed)
+TEST(ThinMedium, AMediumThatBecomesTenTimesSlowerAndReturnsIsFollowed)
 {
     ThinMedium medium;
     medium.BitsPerSecond = 1e6;
@@ -205,7 +205,7 @@ TEST(ThinMedium, a_medium_that_becomes_ten_times_slower_and_returns_is_followed)
     EXPECT_GE(static_cast<double>(medium.BytesCarried) * 8, 0.8 * 1e6 * 10);
 }
 
-TEST(ThinMedium, a_command_waits_for_no_picture_on_another_link)
+TEST(ThinMedium, ACommandWaitsForNoPictureOnAnotherLink)
 {
     ThinMedium medium;
     medium.BitsPerSecond = 250e3;
@@ -243,17 +243,17 @@ constexpr std::size_t MostInVain = 9 * 2 * Datagram;
 
 // Four datagrams are under way before an answer is missed. A medium that has become slow looks like one
 // that carries nothing.
-TEST(ThinMedium, a_large_message_to_who_is_gone_takes_two_datagrams_in_vain_and_small_questions)
+TEST(ThinMedium, ALargeMessageToWhoIsGoneTakesTwoDatagramsInVainAndSmallQuestions)
 {
     EXPECT_LE(BytesInVain(100'000, 1), 12 * Datagram);
 }
 
-TEST(ThinMedium, many_commands_to_who_is_gone_take_at_most_two_datagrams_a_second)
+TEST(ThinMedium, ManyCommandsToWhoIsGoneTakeAtMostTwoDatagramsASecond)
 {
     EXPECT_LE(BytesInVain(32, 100), MostInVain);
 }
 
-TEST(ThinMedium, nothing_that_expired_in_an_outage_is_sent_after_it)
+TEST(ThinMedium, NothingThatExpiredInAnOutageIsSentAfterIt)
 {
     ThinMedium medium;
     medium.BitsPerSecond = 250e3;
@@ -278,7 +278,7 @@ TEST(ThinMedium, nothing_that_expired_in_an_outage_is_sent_after_it)
 }
 
 // Instead of Run: one datagram at a time, as a scheduler requests them.
-TEST(ThinMedium, streams_give_one_datagram_at_a_time_and_acknowledgements_first)
+TEST(ThinMedium, StreamsGiveOneDatagramAtATimeAndAcknowledgementsFirst)
 {
     ThinMedium medium;
     medium.A.Enqueue("beta", "q", 32);
@@ -329,7 +329,7 @@ std::pair<std::size_t, std::size_t> SaidAndSent(const char *knownLink, int messa
 }
 
 // A schedule keeps the stated size free in a budget.
-TEST(ThinMedium, a_stream_says_how_large_its_next_datagram_is_with_all_that_goes_into_it)
+TEST(ThinMedium, AStreamSaysHowLargeItsNextDatagramIsWithAllThatGoesIntoIt)
 {
     for (const int messages : {1, 2, 3, 5, 8, 100})
     {
@@ -342,7 +342,7 @@ TEST(ThinMedium, a_stream_says_how_large_its_next_datagram_is_with_all_that_goes
 }
 
 // The schedule now allows only smaller datagrams than when the part was cut.
-TEST(ThinMedium, a_stream_says_that_a_large_part_goes_again_as_it_was_cut)
+TEST(ThinMedium, AStreamSaysThatALargePartGoesAgainAsItWasCut)
 {
     ThinMedium medium;
     medium.A.Enqueue("beta", "q", 32);

@@ -46,7 +46,7 @@ private:
     std::string _before;
 };
 
-TEST_F(MalformedInput, data_is_dropped)
+TEST_F(MalformedInput, DataIsDropped)
 {
     using Spoil = std::pair<const char *, std::function<void(StoredFrame &)>>;
     const std::vector<Spoil> spoils = {
@@ -98,7 +98,7 @@ TEST_F(MalformedInput, data_is_dropped)
     }
 }
 
-TEST_F(MalformedInput, acknowledgements_are_dropped)
+TEST_F(MalformedInput, AcknowledgementsAreDropped)
 {
     using Spoil = std::pair<const char *, std::function<void(StoredFrame &)>>;
     const std::vector<Spoil> spoils = {
@@ -125,7 +125,7 @@ TEST_F(MalformedInput, acknowledgements_are_dropped)
     }
 }
 
-TEST_F(MalformedInput, hellos_are_dropped)
+TEST_F(MalformedInput, HellosAreDropped)
 {
     using Spoil = std::pair<const char *, std::function<void(StoredFrame &)>>;
     const std::vector<Spoil> spoils = {
@@ -145,7 +145,7 @@ TEST_F(MalformedInput, hellos_are_dropped)
     }
 }
 
-TEST_F(MalformedInput, what_is_meant_for_another_node_is_dropped)
+TEST_F(MalformedInput, WhatIsMeantForAnotherNodeIsDropped)
 {
     const std::string before = a.Node->Describe();
     for (StoredFrame frame : {b.Data(3, {"3"}, a.Now), b.Ack(1), b.Hello()})
@@ -157,7 +157,7 @@ TEST_F(MalformedInput, what_is_meant_for_another_node_is_dropped)
     EXPECT_EQ(a.Node->Describe(), before);
 }
 
-TEST_F(MalformedInput, a_short_frame_whose_check_means_nothing_only_calls_for_a_hello)
+TEST_F(MalformedInput, AShortFrameWhoseCheckMeansNothingOnlyCallsForAHello)
 {
     a.Pass(1s);
     a.TakeHellos();
@@ -171,7 +171,7 @@ TEST_F(MalformedInput, a_short_frame_whose_check_means_nothing_only_calls_for_a_
     EXPECT_EQ(a.TakeHellos().size(), 1U);
 }
 
-TEST_F(MalformedInput, a_short_frame_is_filled_in)
+TEST_F(MalformedInput, AShortFrameIsFilledIn)
 {
     a.Pass(3s);
     StoredFrame data = b.Data(3, {"3"}, a.Now - 1s);
@@ -188,7 +188,7 @@ TEST_F(MalformedInput, a_short_frame_is_filled_in)
     EXPECT_EQ(a.TakeDelivered().size(), 1U) << "100 ms on the way, 150 ms left";
 }
 
-TEST_F(MalformedInput, an_acknowledgement_of_an_unknown_link_only_tells_of_the_peer)
+TEST_F(MalformedInput, AnAcknowledgementOfAnUnknownLinkOnlyTellsOfThePeer)
 {
     StoredFrame ack = b.Ack(1);
     ack.Ack().Link = 7;
@@ -202,7 +202,7 @@ TEST_F(MalformedInput, an_acknowledgement_of_an_unknown_link_only_tells_of_the_p
     EXPECT_EQ(a.Node->Counters().PeerRestarts, 1U);
 }
 
-TEST(LinkLimits, datagrams_of_too_many_peers_and_links_are_dropped)
+TEST(LinkLimits, DatagramsOfTooManyPeersAndLinksAreDropped)
 {
     LinkSettings settings;
     settings.MaxPeers = 1;
@@ -223,7 +223,7 @@ TEST(LinkLimits, datagrams_of_too_many_peers_and_links_are_dropped)
     EXPECT_EQ(a.Node->Counters().TooManyPeers, 2U);
 }
 
-TEST(LinkLimits, messages_for_too_many_peers_and_links_are_refused)
+TEST(LinkLimits, MessagesForTooManyPeersAndLinksAreRefused)
 {
     LinkSettings settings;
     settings.MaxPeers = 1;
@@ -235,7 +235,7 @@ TEST(LinkLimits, messages_for_too_many_peers_and_links_are_refused)
     EXPECT_EQ(a.Node->Counters().RefusedTooMany, 2U);
 }
 
-TEST(LinkLimits, settings_and_options_out_of_range_are_programming_errors)
+TEST(LinkLimits, SettingsAndOptionsOutOfRangeAreProgrammingErrors)
 {
     const auto makeWith = [](const std::function<void(LinkSettings &)> &spoil)
     {
