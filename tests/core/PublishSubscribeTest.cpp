@@ -48,6 +48,13 @@ TEST(PublishSubscribe, AFetchAfterAPostBringsItsContents)
     EXPECT_TRUE(pair.Reader->CompareTime(pair.Poster.get()));
 }
 
+TEST(PublishSubscribe, SetTimeNowStampsByTheClockOfTheWorkspace)
+{
+    Pair<NumberMessage> pair;
+    pair.Poster->SetTimeNow();
+    EXPECT_EQ(pair.Poster->GetTimeStamp(), 1000.0);
+}
+
 TEST(PublishSubscribe, ASecondFetchOfOnePostIsFalse)
 {
     Pair<NumberMessage> pair;
