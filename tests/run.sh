@@ -28,7 +28,7 @@ step() {
 quick() {
     local preset=$1 under=() packages=build
     # Death tests start their own program again, which the kernel cannot do for another processor.
-    [ "$preset" = release ] || { under=(env "GTEST_FILTER=-*DeathTest*" qemu-aarch64-static) packages=arm64; }
+    [ "$preset" = release ] || { under=(env "GTEST_FILTER=-*DeathTest*" qemu-aarch64) packages=arm64; }
     "$root/docker/install-packages.sh" "$root/docker/packages-$packages.txt"
     "$root/docker/build-preset.sh" "$preset" "${unit_tests[@]}" sensor display
     local number=0 failed=0 steps=$((${#unit_tests[@]} + 1)) transport=fastdds

@@ -25,9 +25,13 @@ OTHER_ROOT = "RABIT_OTHER_ROOT"
 RELEASES = {"bookworm": "trixie", "trixie": "bookworm"}
 BUILD = "docker/install-packages.sh && docker/build-preset.sh release interop_node"
 BUILT_NODE = ["/rabit/build/release/bin/interop_node"]
-BUILD_ARM64 = ("dpkg --add-architecture arm64 && ./tests/run.sh --quick arm64 && "
+# qemu before 8 has no IP_MULTICAST_IF.
+BUILD_ARM64 = ("dpkg --add-architecture arm64 && "
+               "echo deb http://deb.debian.org/debian bookworm-backports main >/etc/apt/sources.list.d/backports.list && "
+               "apt-get update && apt-get install -y --no-install-recommends -t bookworm-backports qemu-user && "
+               "./tests/run.sh --quick arm64 && "
                "docker/build-preset.sh arm64 interop_node")
-BUILT_NODE_ARM64 = ["qemu-aarch64-static", "/rabit/build/arm64/bin/interop_node"]
+BUILT_NODE_ARM64 = ["qemu-aarch64", "/rabit/build/arm64/bin/interop_node"]
 # The nodes of both roots find their keys under the same names.
 INSIDE = 'mount --rbind /dev "$0/dev"; mount --bind "$1" "$0/tmp"; root=$0; shift; exec chroot "$root" "$@"'
 
