@@ -137,8 +137,7 @@ void AddReplay(CLI::App &lab, Chosen &chosen)
         });
     AddExamples(*command, {"rabit lab replay lab/flight/flight.mcap --radio 57.6kbit/s",
                            "rabit lab replay flight.mcap --radio 250kbit/s --loss 10% --budget 5kB/s",
-                           "rabit lab replay flight.mcap --radio 1Mbit/s --after 10s --to results",
-                           "rabit lab replay flight.mcap --radio 57.6kbit/s --real-time"});
+                           "rabit lab replay flight.mcap --radio 1Mbit/s --real-time --to results"});
 }
 
 }  // namespace
