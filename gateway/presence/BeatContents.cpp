@@ -64,7 +64,7 @@ bool BeatContents::IsPlaceDue(Duration now) const
 void BeatContents::LookAtFleet()
 {
     const std::uint32_t sum = _peers.FleetSum();
-    const bool isNews = _peers.ToolsCome() != _toolsCome || (_peers.Tools() > 0 && sum != _fleetSum);
+    const bool isNews = HasToolCome() || (_peers.Tools() > 0 && sum != _fleetSum);
     _fleetSumBeats = isNews && !_isTool ? FleetSumBeats : _fleetSumBeats;
     _toolsCome = _peers.ToolsCome();
     _fleetSum = sum;

@@ -80,7 +80,9 @@ public:
     // After a tool has come, and after each change of the fleet while tools are there, this many beats in a
     // row tell which nodes this one hears.
     static constexpr int FleetSumBeats = 3;
-    // Processes tools that have come and nodes that came or went. Call before Size.
+    // True if a tool has come since the last LookAtFleet.
+    bool HasToolCome() const { return _peers.ToolsCome() != _toolsCome; }
+    // Processes tools that have come and nodes that came or went. It walks over all peers. Call before Size.
     void LookAtFleet();
 
     // When a question is due, which need not wait for the next period; empty: no question is due.

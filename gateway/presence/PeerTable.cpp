@@ -284,7 +284,8 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     change.State |= TakeProblems(peer, heard);
     if (const std::optional<std::uint32_t> told = BeatExtensions::FleetSumIn(heard.Beat))
     {
-        change.State |= std::exchange(peer.FleetSum, told) != told;
+        const bool isNew = std::exchange(peer.FleetSum, told) != told;
+        change.State |= _isTool && isNew;
     }
     change.Beat = true;
     if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())

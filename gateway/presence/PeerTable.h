@@ -117,9 +117,15 @@ public:
 
     PeerTable(std::string ownNode, std::uint64_t ownIncarnation, IsNeeded isNeeded = {});
 
-    // True if a node's announcement is wanted; without this function all are.
+    // True if a node's announcement is wanted.
     using IsAsked = std::function<bool(const std::string &node)>;
-    void SetIsAsked(IsAsked isAsked) { _isAsked = std::move(isAsked); }
+    // This node is a tool, which heeds the sums that the nodes tell. Without `isAsked` it wants all
+    // announcements, as a node does.
+    void BeTool(IsAsked isAsked)
+    {
+        _isTool = true;
+        _isAsked = std::move(isAsked);
+    }
 
     // The changes by one input, so that the gateway can react at once.
     struct Change
@@ -204,6 +210,7 @@ private:
     const std::uint64_t _ownIncarnation;
     const std::uint32_t _ownTag;
     const IsNeeded _isNeeded;
+    bool _isTool = false;
     IsAsked _isAsked;
     std::map<std::string, Peer> _peers;
     std::size_t _tools = 0;  // of these

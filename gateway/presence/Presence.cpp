@@ -56,7 +56,7 @@ void Presence::BeTool(PeerTable::IsAsked asksOf)
 {
     _isTool = true;
     _contents.BeTool();
-    _peers.SetIsAsked(std::move(asksOf));
+    _peers.BeTool(std::move(asksOf));
     _peers.Missing().BeQuick(ToolGap, ToolQuestions);
     _pace.SetLongestGap(ToolGap);
     SetBeatPeriod(BeatPeriod());
@@ -157,7 +157,8 @@ const Presence::Served &Presence::Service(Duration now)
     {
         _pace.Introduce(now);
     }
-    if (_peers.Tools() > 0)
+    // The sum changes only with a state or an incarnation.
+    if (_contents.HasToolCome() || (_peers.Tools() > 0 && (served.Change.State || served.Change.NewLife)))
     {
         _contents.LookAtFleet();
     }

@@ -47,6 +47,13 @@ protected:
         return table.OnBeat(BeatOf(node, incarnation, at));
     }
 
+    PeerTable::Change HearSum(const std::string &node, std::uint32_t sum, Ns at)
+    {
+        HeardBeat heard = BeatOf(node, 5, at);
+        BeatExtensions::SayFleetSum(heard.Beat, sum);
+        return table.OnBeat(heard);
+    }
+
     PeerTable table{"ground", 7};
 };
 
@@ -174,11 +181,26 @@ TEST_F(PeerTableToolsTest, ANodeUnderTheNameOfAToolTakesItsPlace)
 
 TEST_F(PeerTableToolsTest, OnlyTheAnnouncementsThatAreWantedAreAskedFor)
 {
-    table.SetIsAsked([](const std::string &node) { return node == "uav2"; });
+    table.BeTool([](const std::string &node) { return node == "uav2"; });
     HearNode("uav1", 1s);
     EXPECT_TRUE(table.Missing().IsEmpty());
     HearNode("uav2", 1s);
     EXPECT_FALSE(table.Missing().IsEmpty());
+}
+
+TEST_F(PeerTableToolsTest, ANodeHasNothingToPostWhenAnotherOneTellsANewSumOfTheFleet)
+{
+    HearNode("uav1", 1s);
+    EXPECT_FALSE(HearSum("uav1", 77, 2s).State);
+    EXPECT_EQ(table.Find("uav1")->FleetSum, 77u);
+}
+
+TEST_F(PeerTableToolsTest, AToolPostsANewSumOfTheFleet)
+{
+    table.BeTool({});
+    HearNode("uav1", 1s);
+    EXPECT_TRUE(HearSum("uav1", 77, 2s).State);
+    EXPECT_FALSE(HearSum("uav1", 77, 3s).State) << "it is not new";
 }
 
 }  // namespace
