@@ -58,16 +58,9 @@ Had FromFleet(const Options &options, const std::string &node, Wakeup &wakeup)
         const auto found = types.find(options.Type);
         return found == types.end() ? Offers::Definitions() : found->second;
     };
-    // Two nodes of one name disturb each other, so this listens for a node of that name: for --wait seconds,
-    // without it until the whole fleet is known.
-    const auto isTaken = [&] { return !session.TakenOf({node}).empty(); };
-    const auto isDecided = [&]
-    {
-        return isTaken() || (!options.Common.IsWaitGiven && session.IsFleetKnown() &&
-                             Offers::AreComplete(session.Nodes()));
-    };
-    session.WaitUntil(options.Common.Wait, isDecided);
-    if (isTaken())
+    // Two nodes of one name disturb each other, so this listens for a node of that name for --wait seconds,
+    // even if the fleet is known earlier: a silent node that the others hold for LOST is not in their sums.
+    if (session.WaitUntil(options.Common.Wait, [&] { return !session.TakenOf({node}).empty(); }))
     {
         Output::Talk(NameIsTaken(node));
         return {nullptr, ProblemFound};
