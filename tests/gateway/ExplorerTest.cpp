@@ -457,6 +457,28 @@ TEST_F(ExplorerTest, TellsThatANodeHearsTheNodesThatTheToolHears)
     EXPECT_TRUE(fleet.RunUntil(doAll, 1s));
 }
 
+TEST_F(ExplorerTest, NodesTellAgainOfWhomTheyHearWhenANodeComesOrGoesWhileAToolIsThere)
+{
+    fleet.Add(AircraftConfig("uav2"));
+    const FleetExplorer &explorer = AddTool();
+    fleet.RunFor(10s);
+    const auto doAllHear = [&explorer](std::size_t live)
+    {
+        const auto nodes = explorer.Nodes();
+        const auto isLive = [](const FleetExplorer::Node &node)
+        { return node.State != Gateway::NodeState::LOST; };
+        return std::count_if(nodes.begin(), nodes.end(), isLive) == static_cast<std::ptrdiff_t>(live) &&
+               std::all_of(nodes.begin(), nodes.end(),
+                           [&](const FleetExplorer::Node &node)
+                           { return !isLive(node) || node.HearsTheSame; });
+    };
+    ASSERT_TRUE(doAllHear(2));
+    fleet.Add(AircraftConfig("uav3"));
+    EXPECT_TRUE(fleet.RunUntil([&] { return doAllHear(3); }, 2s));
+    fleet.Kill("uav3");
+    EXPECT_TRUE(fleet.RunUntil([&] { return doAllHear(2); }, 10s));
+}
+
 TEST_F(ExplorerTest, ANodeThatTheToolHearsLateIsLackingUntilThen)
 {
     fleet.Add(AircraftConfig("uav2"));

@@ -1,6 +1,7 @@
 // A node that is a tool, among others: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 #include <rabit/RabitQueueReceipt.h>
+#include <rabit/idl/MessageTypeRegistry.h>
 
 #include <memory>
 #include <optional>
@@ -9,6 +10,7 @@
 
 #include "HandNode.h"
 #include "SimulatedFleet.h"
+#include "wire/BeatExtensions.h"
 
 namespace Rabit
 {
@@ -190,6 +192,24 @@ TEST_F(ToolTest, BeatsOnceInTwoSeconds)
     fleet.RunFor(60s);
     EXPECT_GE(beats, 28);
     EXPECT_LE(beats, 32);
+}
+
+TEST_F(ToolTest, WithoutAToolNoBeatTellsTheSumOfTheFleet)
+{
+    std::size_t beats = 0;
+    std::size_t sums = 0;
+    const HandNode listener(fleet.Network, "listener", 1,
+                            [&](SampleBytes bytes, const SampleInfo &)
+                            {
+                                Gateway::Beat beat;
+                                ASSERT_TRUE(MessageTypeRegistry::Of(beat)->Deserialize(bytes, beat));
+                                ++beats;
+                                sums += BeatExtensions::FleetSumIn(beat) ? 1 : 0;
+                            });
+    fleet.Add(AircraftConfig("uav2"));
+    fleet.RunFor(3s);
+    EXPECT_GT(beats, 0u);
+    EXPECT_EQ(sums, 0u);
 }
 
 TEST_F(ToolTest, AsksForNoOtherAnnouncementsThanItIsToldTo)
