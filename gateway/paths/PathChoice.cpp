@@ -72,8 +72,12 @@ void PathChoice::Heard(const std::string &node, std::size_t path, NodeState stat
         // The node hears this one by an earlier path again, which has to prove itself.
         for (std::size_t earlier = 0; earlier < path; ++earlier)
         {
-            std::optional<Duration> &rests = of.Ways[earlier].RestsUntil;
-            rests = std::max(rests.value_or(now), now);
+            Way &proving = of.Ways[earlier];
+            if (proving.IsSound(now))
+            {
+                proving.Rest.Reset();
+            }
+            proving.RestsUntil = std::max(proving.RestsUntil.value_or(now), now);
         }
     }
     Choose(node, of, now);
@@ -136,9 +140,9 @@ bool PathChoice::Unanswered(const std::string &node, Duration now)
     {
         return false;
     }
-    const bool isNew = Second(node, now) != other;
+    const bool isNew = of.Second != other || now >= of.SecondUntil;
     of.Second = other;
-    of.SecondSince = now;
+    of.SecondUntil = now + Both;
     return isNew;
 }
 
@@ -177,7 +181,7 @@ void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
     if (path != of.Choice && now - of.Ways[of.Choice].CameAt >= Silence)
     {
         of.Second = path;
-        of.SecondSince = now;
+        of.SecondUntil = now + Both;
     }
 }
 
@@ -275,8 +279,7 @@ std::optional<std::size_t> PathChoice::Second(std::string_view node, Duration no
         return std::nullopt;
     }
     const Node &of = found->second;
-    const bool isOver = now - of.SecondSince >= Both && of.Ways[of.Choice].CameAt > of.SecondSince;
-    if (of.Second && !isOver)
+    if (of.Second && now < of.SecondUntil && of.Ways[*of.Second].State == NodeState::UP)
     {
         return of.Second;
     }

@@ -23,24 +23,22 @@ namespace Rabit
 // - A node is reached by the first path on which it is UP, which has not failed lately, and by which the node
 //   hears this one: each node says of others that it hears them by a later path alone.
 // - A path fails for a node when the node stops being UP on it. After it is UP again it rests: other paths
-// are
-//   preferred for a second, and twice as long after each further failure, up to half a minute. A path that
-//   has not failed for ten seconds since its rest counts as sound again. So a path that comes and goes is
-//   left alone.
+//   are preferred for a second, and twice as long after each further failure, up to half a minute. A path
+//   that has not failed for ten seconds since its rest counts as sound again. So a path that comes and goes
+//   is left alone.
 // - A path fails as well when many of the node's beats do not come by it, even if it goes for less time than
 //   makes a node STALE: beats that were missed are counted, and a beat that came takes MissedForgiven of that
 //   count. That holds only if another path misses half as many at most and has no smaller budget, since links
 //   repair losses, and a slow path cannot carry what a fast one does. Beats that are missed during a rest are
 //   no further failure.
-// - A path rests for ShortRest at most if the others have smaller budgets: a slow path does not stand in for
-// a
-//   fast one for half a minute.
+// - A path rests for ShortRest at most if no other path on which the node is UP when it fails has as large a
+//   budget: a slow path does not stand in for a fast one for half a minute.
 // - If the node is UP on no path, the choice stays as it was.
 // - While the chosen path is in doubt, a second one is used as well (Second), since nobody knows yet which of
 //   them works. It is in doubt while queue messages are unanswered for longer than usual, or the node itself
-//   sends by another path; that ends after some time, if the node has been heard on the chosen path since. It
-//   is in doubt while the node's beat is late there: it did not come, or was held up on the way. And it is in
-//   doubt from a failure until it counts as sound again, if another path is sound.
+//   sends by another path, and for the time Both after that: by then its beats tell. It is in doubt while the
+//   node's beat is late there: it did not come, or was held up on the way. And it is in doubt from a failure
+//   until it counts as sound again, if another path is sound. The node is UP on the second path.
 // - While messages of the node come by another path than the chosen one, answers go by that path as well: the
 //   node may lack those that went by the chosen one. Answers to answers do not, so this ends with the doubt.
 //
@@ -51,7 +49,7 @@ class PathChoice
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // How long a second path is used as well, at least.
+    // How long a second path is used as well after the last sign of a doubt.
     static constexpr Duration Both = std::chrono::seconds(2);
     // Frames that come by another path are a sign if none has come by the chosen one for this long.
     static constexpr Duration Silence = std::chrono::milliseconds(100);
@@ -78,10 +76,11 @@ public:
     // incarnation. To be called when beats did not come, for the other paths first, and before Heard tells
     // what the beat after them says.
     void Missed(const std::string &node, std::size_t path, const BeatCount &beats, Duration now);
-    // Whether the node's newest beat by that path is older than beats usually become.
+    // Whether the node's newest beat by that path is older than beats usually become, or was held up on the
+    // way.
     void Late(const std::string &node, std::size_t path, bool isLate);
-    // A queue message for the node remains unanswered for longer than usual. Returns true if frames go by a
-    // second path from now on.
+    // A queue message for the node remains unanswered for longer than usual. Returns true if this is a new
+    // doubt and there is a second path.
     bool Unanswered(const std::string &node, Duration now);
     // A new frame of the links came from the node by that path before it came by another.
     void CameBy(const std::string &node, std::size_t path, Duration now);
@@ -133,7 +132,7 @@ private:
         std::size_t Choice = 0;
         std::size_t FirstHeardOn = 0;  // the first path that is UP and does not rest; else that is UP
         std::optional<std::size_t> Second;
-        Duration SecondSince{0};
+        Duration SecondUntil{0};
         std::optional<std::size_t> AnswersBy;
         Duration AnswersUntil{0};
     };

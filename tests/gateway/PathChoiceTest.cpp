@@ -114,15 +114,55 @@ TEST_F(PathChoiceTest, WhileAnAnswerIsMissingFramesGoByBothPaths)
     EXPECT_EQ(choice.Second("uav1", 5s), Modem);
 }
 
-TEST_F(PathChoiceTest, BothPathsAreUsedUntilTheNodeIsHeardOnTheChosenOne)
+TEST_F(PathChoiceTest, ADoubtEndsSomeTimeAfterItsLastSignThoughNoFrameComes)
 {
     Hear(Mesh, NodeState::UP, 0s);
     Hear(Modem, NodeState::UP, 0s);
     choice.Unanswered("uav1", 5s);
-    EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both), Modem);
-    choice.CameBy("uav1", Mesh, 6s);
-    EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both - 1ms), Modem);
-    EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::Both), std::nullopt);
+    choice.Unanswered("uav1", 6s);
+    EXPECT_EQ(choice.Second("uav1", 6s + PathChoice::Both - 1ms), Modem);
+    EXPECT_EQ(choice.Second("uav1", 6s + PathChoice::Both), std::nullopt);
+    choice.CameBy("uav1", Modem, 20s);
+    EXPECT_EQ(choice.Second("uav1", 20s + PathChoice::Both - 1ms), Modem);
+    EXPECT_EQ(choice.Second("uav1", 20s + PathChoice::Both), std::nullopt);
+}
+
+TEST_F(PathChoiceTest, ADeadNodeHasNoSecondPath)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    choice.Unanswered("uav1", 5s);
+    Hear(Modem, NodeState::LOST, 6s);
+    EXPECT_EQ(choice.Second("uav1", 6s), std::nullopt);
+    Hear(Mesh, NodeState::LOST, 6s);
+    EXPECT_FALSE(choice.Unanswered("uav1", 6s));
+    choice.CameBy("uav1", Modem, 6s);
+    EXPECT_EQ(choice.Second("uav1", 6s), std::nullopt);
+    EXPECT_FALSE(choice.IsSecondOfAny(Modem, 6s));
+}
+
+TEST(PathChoiceOfThreePaths, TakesAnotherSecondPathIfThatOneDies)
+{
+    PathChoice choice{3};
+    for (const std::size_t path : {0U, 1U, 2U})
+    {
+        choice.Heard("uav1", path, NodeState::UP, false, 0s);
+    }
+    choice.Unanswered("uav1", 5s);
+    EXPECT_EQ(choice.Second("uav1", 5s), 1U);
+    choice.Heard("uav1", 1, NodeState::LOST, false, 5500ms);
+    choice.Late("uav1", 0, true);
+    EXPECT_EQ(choice.Second("uav1", 5500ms), 2U);
+}
+
+TEST_F(PathChoiceTest, AMissingAnswerIsNewsThoughFramesGoByBothPathsAlready)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    choice.Late("uav1", Mesh, true);
+    EXPECT_TRUE(choice.Unanswered("uav1", 5s));
+    EXPECT_FALSE(choice.Unanswered("uav1", 5100ms)) << "still the same";
+    EXPECT_TRUE(choice.Unanswered("uav1", 5100ms + PathChoice::Both));
 }
 
 TEST_F(PathChoiceTest, APathThatFailedHasCompanyUntilItIsSoundAgain)
@@ -278,6 +318,20 @@ TEST_F(PathChoiceTest, ANodeThatHearsThisOneByALaterPathAloneIsReachedByThat)
     EXPECT_EQ(ChosenAt(5s), Modem);
     choice.Heard("uav1", Modem, NodeState::UP, false, 6s);
     EXPECT_EQ(ChosenAt(6s), Mesh);
+}
+
+TEST_F(PathChoiceTest, APathByWhichTheNodeDidNotHearThisOneForAMomentForgetsFailuresOfLongAgo)
+{
+    Hear(Mesh, NodeState::UP, 0s);
+    Hear(Modem, NodeState::UP, 0s);
+    for (const PathChoice::Duration now : {5s, 7s, 9s, 11s, 13s, 15s})
+    {
+        FailMesh(now);
+    }
+    choice.Heard("uav1", Modem, NodeState::UP, true, 3600s);
+    choice.Heard("uav1", Modem, NodeState::UP, false, 3601s);
+    FailMesh(3605s);
+    EXPECT_EQ(ChosenAt(3607s), Mesh);
 }
 
 TEST_F(PathChoiceTest, TellsWhichNodesAreHeardByALaterPathAlone)
