@@ -294,6 +294,12 @@ private:
         const std::lock_guard lock(_sending);
         return _announcement;
     }
+    // The sender of OwnAnnouncement; GuidPrefix{}: there is none yet.
+    GuidPrefix OwnPrefix()
+    {
+        const std::lock_guard lock(_sending);
+        return _announcement.empty() ? GuidPrefix{} : SenderOf(_announcement);
+    }
     // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
     void Forget(const GuidPrefix &peer, std::int64_t number)
     {
@@ -329,8 +335,8 @@ private:
         {
             return;
         }
-        const auto own = OwnAnnouncement();
-        if (own.empty() || !KeyAddressees::IsAuthenticated(SenderOf(own), peer))
+        const GuidPrefix own = OwnPrefix();
+        if (own == GuidPrefix{} || !KeyAddressees::IsAuthenticated(own, peer))
         {
             return;
         }
@@ -341,14 +347,14 @@ private:
     }
     void HandOnAsProtected(const Receiver &receiver, const GuidPrefix &peer, std::span<std::uint8_t> message)
     {
-        const auto own = OwnAnnouncement();
-        if (own.empty())
+        const GuidPrefix own = OwnPrefix();
+        if (own == GuidPrefix{})
         {
             HandOn(receiver, message);
             return;
         }
         const std::lock_guard lock(_protecting);
-        AsProtected(SenderOf(own), peer, [&] { HandOn(receiver, message); });
+        AsProtected(own, peer, [&] { HandOn(receiver, message); });
     }
     KeyThread *Keys() const { return _descriptor.Chosen().Keys.get(); }
     // Notes the address of a participant to which the vendor sends. Requires _sending.
