@@ -114,8 +114,8 @@ public:
             authentication->Start({.IsAuthenticated =
                                        [this](const auto &peer)
                                    {
-                                       const auto own = OwnAnnouncement();
-                                       return !own.empty() && KeyAddressees::HasKeysOf(SenderOf(own), peer);
+                                       const GuidPrefix own = OwnPrefix();
+                                       return own != GuidPrefix{} && KeyAddressees::HasKeysOf(own, peer);
                                    },
                                    .Ask = nullptr,
                                    .IsWaiting = [this](const auto &peer) { return Keys()->IsWaiting(peer); },

@@ -87,7 +87,8 @@ void SwitchIntraprocessOff()
 namespace
 {
 
-// Matches a builtin reader of this process with a builtin writer of a peer, as long as the object lives.
+// Matches a builtin reader of this process with a builtin writer of a peer, as long as the object lives. The
+// reader's participant must outlive it: ~SessionCore stops its threads before it removes the participant.
 class BuiltinMatch
 {
 public:
