@@ -25,6 +25,10 @@ constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 // Share of a budget that the exchange of keys may take, so that beats get through meanwhile.
 constexpr double KeyShare = 0.5;
 
+// Share of a budget that copies of States and telemetry leave free, but for one datagram: half of a small
+// budget with it.
+constexpr double KeptShare = 0.6;
+
 std::size_t LargestDatagramOf(const GatewayConfig &config)
 {
     return config.MaxDatagram + AirCost::IpAndUdp;
@@ -259,13 +263,13 @@ void AirTraffic::LookAt(std::size_t publisher, Duration now)
     }
 }
 
-// Of values that go by another path, too. Half of a budget stays free for copies of queue messages, which
-// have no turns. The next copy is due when there is room for it.
+// Of values that go by another path, too. They go while KeptShare of a budget is free, since copies of queue
+// messages have no turns. A copy's own size does not matter here: by it small copies would always go before
+// larger ones, and the schedule would have no choice.
 bool AirTraffic::MayCopy(const TopicPublisher &publisher, Duration now)
 {
-    const auto kept = static_cast<std::size_t>(_config.Radio.Budget.value_or(0.0) / 2);
-    return ImportanceOf(publisher.Rule()) != TrafficClass::Bulk &&
-           _schedule.MaySend(publisher.NextBytes(_cost) + kept, now);
+    const auto kept = static_cast<std::size_t>(KeptShare * _config.Radio.Budget.value_or(0.0));
+    return ImportanceOf(publisher.Rule()) != TrafficClass::Bulk && _schedule.MaySend(kept, now);
 }
 
 void AirTraffic::LookAtTypes(Duration now)

@@ -230,7 +230,7 @@ protected:
     std::uint64_t lastPose = 0;
     std::vector<double> ages;
     double worstAge = 0;       // largest error of a pose's age
-    Duration picturesEach{0};  // messages of class bulk from the aircraft; 0: none
+    Duration picturesEach{0};  // messages from the aircraft to the queue of the ground station; 0: none
     int sent = 0;
     int got = 0;
     Duration lastCommandAt{0};
@@ -381,6 +381,24 @@ TEST_F(PathsTest, IfOnlyTheWayToTheGroundIsDeadThePoseComesByTheOtherPath)
     EXPECT_LT(AgeAtGround(), 0.3);
 }
 
+TEST_F(PathsTest, IfOnlyOneWayIsDeadThePoseGoesOnWithoutCommands)
+{
+    AddBoth();
+    RunFor(5s);
+    watchesPose = true;
+    mesh.SetFaults("ground", "uav1", {.Cut = true});
+    RunFor(5s);
+    EXPECT_LE(*std::max_element(ages.begin(), ages.end()), 0.2);
+    Cut(mesh, false);
+    RunFor(2s + PathChoice::Sound);
+    ages.clear();
+    mesh.SetFaults("uav1", "ground", {.Cut = true});
+    RunFor(5s);
+    // The aircraft hears the ground station in time. It learns of the cut when the ground station holds it
+    // STALE there, by the next beat over the modem.
+    EXPECT_LE(*std::max_element(ages.begin(), ages.end()), 2.2);
+}
+
 TEST_F(PathsTest, APathThatComesAndGoesLosesNothing)
 {
     AddBoth();
@@ -420,8 +438,13 @@ TEST_F(PathsTest, CopiesOfTelemetryLeaveRoomOnASmallModemForCopiesOfQueueMessage
     picturesEach = 500ms;
     AddBoth(1500);
     RunFor(10s);
+    std::shared_ptr<RabitMessage> message;
+    while (managers["ground"]->GetManagerMessageQueue()->GetMessage(message))
+    {
+    }
     Duration last = passed;
     Duration longest = 0s;
+    int came = 0;
     for (int i = 0; i < 60 * 200; ++i)
     {
         if (i % 200 == 0)
@@ -429,14 +452,60 @@ TEST_F(PathsTest, CopiesOfTelemetryLeaveRoomOnASmallModemForCopiesOfQueueMessage
             Cut(mesh, i % 1000 == 0);  // a second in five
         }
         RunFor(Step);
-        std::shared_ptr<RabitMessage> message;
         while (managers["ground"]->GetManagerMessageQueue()->GetMessage(message))
         {
             longest = std::max(longest, passed - last);
             last = passed;
+            ++came;
         }
     }
+    longest = std::max(longest, passed - last);
     EXPECT_LE(longest, picturesEach + 300ms);
+    EXPECT_GE(came, 60s / picturesEach - 1);
+}
+
+// The mesh brings it after 1.3 s, the modem earlier. A copy of a pose always finds room before one of the
+// State does.
+TEST_F(PathsTest, AStateHasItsTurnBeforeTelemetryByASmallModemToo)
+{
+    AddBoth(1000);
+    RunFor(10s);
+    mesh.SetFaults("*", "*", {.Delay = 1300ms});
+    RunFor(2s);
+    for (std::uint32_t i = 1; i <= 5; ++i)
+    {
+        // More than half of the budget.
+        missions["uav1"]->target = std::string(64, 't');
+        missions["uav1"]->partner = std::string(64, 'p');
+        missions["uav1"]->text = std::string(128, 'x');
+        missions["uav1"]->area_declined = std::string(128, 'a');
+        missions["uav1"]->commands = i;
+        missions["uav1"]->PostMessage();
+        RunFor(1250ms);
+        Uav::MissionState state;
+        processes["ground"]->Workspace.ForceFetchMessage("uav1/MissionState", &state);
+        EXPECT_EQ(state.commands, i);
+    }
+}
+
+TEST_F(PathsTest, AMomentOfTheMeshCostsTheModemNothingAfterwards)
+{
+    AddBoth();
+    RunFor(5s);
+    Command(1s);  // until the links know how long answers take
+    RunFor(1s);
+    std::uint64_t before = modem.Sent("uav1").Bytes;
+    RunFor(10s);
+    const std::uint64_t beats = modem.Sent("uav1").Bytes - before;
+    Cut(mesh, true);
+    Command(CommandPeriod);
+    RunFor(300ms);
+    Cut(mesh, false);
+    EXPECT_EQ(got, sent);
+    RunFor(5s);
+    before = modem.Sent("uav1").Bytes;
+    RunFor(10s);
+    EXPECT_LE(modem.Sent("uav1").Bytes - before, beats * 5 / 4);
 }
 
 TEST_F(PathsTest, AStateThatIsLostWhileTheEndsChoseDifferentPathsComes)
