@@ -4,7 +4,7 @@
 #   tests/run.sh --quick         only the unit tests of core, idl, transport and gateway, and one exchange of two nodes
 #   tests/run.sh --quick arm64   the same, compiled for arm64 and run under qemu-user: docker/README.md says what it needs
 # Without arguments all tests run, except those with the label mutation, which test the tests, and those with the labels
-# arm64_long, bare_long, field_long, fuzz_long, package_long and soak: each set takes five minutes or more, soak an hour.
+# arm64_long, bare_long, bench_long, field_long, fuzz_long, package_long and soak: each set takes five minutes to some hours.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"

@@ -3,6 +3,7 @@ there, and starts the ground station of the package. docker/debian/README.md lis
 
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -65,6 +66,8 @@ def check_dependencies(packages):
 
 def check_rules(packages):
     """Debian's rules, as lintian knows them; docker/debian/overrides says which are broken, and why."""
+    if shutil.which("lintian") is None:
+        sys.exit("lintian is missing; docker/packages-pack.txt lists it")
     consumer.run("lintian", "--no-cfg", "--allow-root", "--fail-on", "error,warning", *packages.values())
     print("ok: lintian")
 

@@ -46,9 +46,11 @@ class JudgedTest(unittest.TestCase):
             return high - low
         self.assertLess(width(100), width(9) / 2)
 
-    def test_the_bounds_of_nine_are_the_second_and_the_eighth_at_most(self):
-        low, middle, high = judged.median_within(range(9))
-        self.assertEqual((middle, low + high), (4, 8))
+    def test_the_bounds_of_nine_are_the_least_and_the_largest(self):
+        self.assertEqual(judged.median_within(range(9)), (0, 4, 8))
+
+    def test_the_bounds_of_twenty_seven_leave_out_seven_at_each_end(self):
+        self.assertEqual(judged.median_within(range(27)), (7, 13, 19))
 
 
 if __name__ == "__main__":

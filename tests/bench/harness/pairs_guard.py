@@ -107,7 +107,7 @@ def main():
         of_kind["machine"] = report.machine()
         WRITTEN.write_text(json.dumps(written, indent=1) + "\n")
         return 0
-    return 1 if judged.WORSE in verdicts else 0 if verdicts == {judged.GOOD} else SKIPPED
+    return 1 if judged.WORSE in verdicts else 0 if verdicts - {judged.UNKNOWN} == {judged.GOOD} else SKIPPED
 
 
 if __name__ == "__main__":

@@ -12,6 +12,7 @@ import tempfile
 import time
 
 import rabit
+from conftest import wait_until
 
 LIBRARY = os.environ.get("RABIT_PING", "")
 PING = [{"message": "Ping", "type": "PythonBench::Ping", "qos": "telemetry"}]
@@ -56,8 +57,7 @@ def test_a_manager_of_python_is_woken_by_one_of_cpp_in_its_reactor(one_network):
         pings = node.subscribe("Ping", ping)
         first, second = pings.get(timeout=30), pings.get(timeout=30)
         assert 0 < first.value.sent_ns < second.value.sent_ns
-        while counts.turns <= 10:
-            pings.get(timeout=30)
+        wait_until(lambda: counts.turns > 10)
 
 
 def measure(kind, seconds):
