@@ -195,9 +195,14 @@ class Case:
                               timeout=LIMIT_S, check=False)
         self.code, self.said = done.returncode, done.stdout
 
+    def is_disturbed(self):
+        """True if the notes of the run, or of a replay in a folder of its results, say that the machine was too busy."""
+        notes = [path.read_text(encoding="utf-8") for path in self.results.rglob("junit.xml")]
+        return any(words in text for text in notes for words in DISTURBED)
+
     def repeat_if_disturbed(self):
-        """Once more, and alone, if the machine was too busy for it, as its notes say. Returns true if it ran again."""
-        if not any(words in (self.results / "junit.xml").read_text(encoding="utf-8") for words in DISTURBED):
+        """Runs again, alone, if the machine was too busy. Returns true if it ran again."""
+        if not self.is_disturbed():
             return False
         print(f"{self.folder.name}: once more, since the machine was late:\n{self.said}")
         shutil.rmtree(self.results)
