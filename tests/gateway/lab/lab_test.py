@@ -176,10 +176,10 @@ WITHOUT_RIGHTS = ["setpriv", "--bounding-set=-sys_admin"]
 class Case:
     """One run in a folder of its own."""
 
-    def __init__(self, folder, name, scenario, count, rabit, uav, before=()):
+    def __init__(self, folder, name, scenario, count, rabit, uav, before=(), nodes=NODES):
         self.folder = folder / name
         self.folder.mkdir()
-        text = NODES + scenario
+        text = nodes + scenario
         for word, value in (("COUNT", count), ("UAV", uav), ("CONFIG", ROOT / "examples" / "swarm" / "uav.yaml")):
             text = text.replace(word, str(value))
         (self.folder / f"{name}.yaml").write_text(text, encoding="utf-8")
