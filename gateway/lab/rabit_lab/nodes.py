@@ -63,7 +63,7 @@ class Nodes:
         os.close(file)
 
     def start(self, name):
-        """A new life of a node that does not run."""
+        """Starts a new life of a node that does not run. The first life also starts the programs beside the node."""
         if self.is_running(name):
             return
         node, place = self._scenario.nodes[name], self._scenario.place_of(name)
@@ -87,6 +87,10 @@ class Nodes:
         process = processes.Process(argv, env, on_line=lambda text: self._line(index, text),
                                     cwd=self.disk(name) if node.beside else self._scenario.folder, start_new_session=True)
         self._running[name] = (index, process)
+        if number == 1:
+            for other in self._scenario.nodes.values():
+                if other.beside == name and not self._flight.lives_of(other.name):
+                    self.start(other.name)
 
     def records(self, name, number):
         return self._folder / "records" / name / str(number)

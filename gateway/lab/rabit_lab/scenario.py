@@ -23,7 +23,7 @@ class Node:
     command: list
     image: str
     env: dict
-    start: float  # seconds; none: an event starts it
+    start: float  # seconds; none: an event starts it, or the first start of the node that it is beside
     plain: bool  # no Rabit node: others do not see it, and it records nothing
     line: int
     beside: str = ""  # the node in whose network it runs, as its autopilot does
@@ -280,7 +280,7 @@ class Reader:
             name = f"{node.name}.{word}"
             if name in self.nodes:
                 self.fail(value.line_of("autopilot"), f"two nodes would be called `{name}`")
-            self._autopilots[name] = Node(name, argv, None, {**env, **node.env}, node.start or 0.0, True, node.line, node.name)
+            self._autopilots[name] = Node(name, argv, None, {**env, **node.env}, None, True, node.line, node.name)
 
     def _read_networks(self, top):
         if "network" not in top:

@@ -18,7 +18,7 @@ import yaml
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "gateway" / "lab"))
 # pylint: disable=wrong-import-position
 from rabit_lab import flight as flights  # noqa: E402
-from rabit_lab import junit, main, new, places, plots, real_time, report, scenario, tools, units, what_if  # noqa: E402
+from rabit_lab import junit, main, new, nodes, places, plots, real_time, report, scenario, tools, units, what_if  # noqa: E402
 from rabit_lab.marked import ScenarioError  # noqa: E402
 
 FLEET = """nodes:
@@ -128,6 +128,24 @@ class ScenarioTest(InFolder):
         (self.folder / "bin").mkdir()
         with mock.patch("shutil.which", lambda program: f"{self.folder}/bin/{program}"):
             self.refused(4, "has no start scripts in", "", fleet.replace("PILOT", "px4-sih"))
+
+    def test_an_autopilot_starts_with_the_first_life_of_its_node(self):
+        fleet = "nodes:\n  uav: {command: [sh], start: never, autopilot: {kind: arducopter, over: dds}}\n  late: {command: [sh], start: never}\n"
+        with mock.patch("shutil.which", lambda program: "/bin/" + program):
+            read = self.read("events:\n  - {at: 9s, start: uav}\n", fleet)
+        self.assertEqual([node.start for node in read.nodes.values()], [None] * 4)
+        flight = flights.Flight(read)
+        spaces = types.SimpleNamespace(start=lambda place, argv, env: (argv, env), ended=lambda name: None, signal=lambda *_: None)
+        nets = types.SimpleNamespace(addresses=lambda place: ["10.77.0.1"], spaces=spaces)
+        with mock.patch("rabit_lab.processes.Process"):
+            started = nodes.Nodes(read, nets, flight, self.folder, None, lambda: 9.0)
+            self.assertEqual(flight.lives, [])
+            started.start("uav")
+            self.assertEqual([(life.node, life.began) for life in flight.lives], [("uav", 9), ("uav.agent", 9), ("uav.autopilot", 9)])
+            started.kill("uav.autopilot")
+            started.kill("uav")
+            started.start("uav")
+        self.assertEqual([life.node for life in flight.lives], ["uav", "uav.agent", "uav.autopilot", "uav"])
 
     def test_a_program_that_is_not_there_is_named_before_anything_starts(self):
         self.refused(2, "no program `./build/uav`", fleet="nodes:\n  uav: {command: [./build/uav]}\n")
