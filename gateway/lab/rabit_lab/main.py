@@ -31,7 +31,7 @@ def run(options):
     """`rabit lab run`"""
     scenario = scenarios.read(options.scenario)
     if options.check:
-        print(f"{options.scenario}: {len(scenario.nodes)} nodes, {len(scenario.networks)} networks, {len(scenario.events)} "
+        print(f"{options.scenario}: {len(scenario.fleet())} nodes, {len(scenario.networks)} networks, {len(scenario.events)} "
               f"events, {len(scenario.expects)} expectations, {scenario.run:g} s")
         return GOOD
     bare = [node for node in scenario.nodes.values() if not node.image]

@@ -63,7 +63,7 @@ class Networks:
         self._scenario = scenario
         self.spaces = spaces
         self.radios = {}
-        self.hosts = [name for name, node in scenario.nodes.items() if not node.beside] + ([OBSERVER] if scenario.observe else [])
+        self.hosts = scenario.fleet() + ([OBSERVER] if scenario.observe else [])
         for host in self.hosts:
             spaces.make(host)
         for network in scenario.networks.values():

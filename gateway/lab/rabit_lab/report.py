@@ -154,7 +154,7 @@ def write(scenario, flight, verdicts, interrupted, merged, folder):
     now = datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
     notes = "".join(f"<p>{escape(note)}</p>" for note in flight.notes + ([f"no flight.mcap: {merged}"] if merged else []))
     write_page(folder / "report.html", f"{scenario.path.stem}: {word}", good,
-               f"{counted if not interrupted else 'stopped by hand'} · {len(scenario.nodes)} nodes · {flight.end:.1f} s · {now}",
+               f"{counted if not interrupted else 'stopped by hand'} · {len(scenario.fleet())} nodes · {flight.end:.1f} s · {now}",
                [("Expectations", verdict_rows(scenario, verdicts) + notes), ("Events", event_rows(flight)),
                 ("Over time", '<p class="faint">Dashed lines have the numbers of the events; grey times are faults that last. Point at '
                               f"them for their names.</p>{shown}"),

@@ -58,7 +58,7 @@ class Runner:
         for node in self.scenario.nodes.values():
             if node.start == 0:
                 self._nodes.start(node.name)
-        self.say(f"{len(self.flight.lives)} nodes started")
+        self.say(f"{sum(bool(self.flight.lives_of(name)) for name in self.scenario.fleet())} nodes started")
         interrupted = not self._fly()
         self._end(pauses)
         verdicts = [] if interrupted else [expect.verdict(self.flight) for expect in self._expects()]

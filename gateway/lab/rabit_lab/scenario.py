@@ -114,6 +114,10 @@ class Scenario:
     expects: list
     observe: str  # network of the observer, or none
 
+    def fleet(self):
+        """The names of the nodes, without the programs beside them."""
+        return [name for name, node in self.nodes.items() if not node.beside]
+
     def members(self, node):
         """The networks of that node."""
         return [network for network in self.networks.values() if node in network.members]

@@ -57,9 +57,10 @@ class Table:
         return counts
 
     def summary(self, now):
-        there = sum(self._flight.life_at(node, now) is not None for node in self._scenario.nodes)
-        lost = [node for node in self._scenario.nodes if self.seen(node, now).get("LOST")]
-        return (f"{there} of {len(self._scenario.nodes)} nodes run"
+        fleet = self._scenario.fleet()
+        there = sum(self._flight.life_at(node, now) is not None for node in fleet)
+        lost = [node for node in fleet if self.seen(node, now).get("LOST")]
+        return (f"{there} of {len(fleet)} nodes run"
                 + (f"; LOST somewhere: {', '.join(lost)}" if lost else "") + self._channels())
 
     def _channels(self):

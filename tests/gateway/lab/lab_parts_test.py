@@ -18,7 +18,7 @@ import yaml
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "gateway" / "lab"))
 # pylint: disable=wrong-import-position
 from rabit_lab import flight as flights  # noqa: E402
-from rabit_lab import junit, main, new, nodes, places, plots, real_time, report, scenario, tools, units, what_if  # noqa: E402
+from rabit_lab import junit, main, new, nodes, places, plots, real_time, report, scenario, table, tools, units, what_if  # noqa: E402
 from rabit_lab.marked import ScenarioError  # noqa: E402
 
 FLEET = """nodes:
@@ -146,6 +146,20 @@ class ScenarioTest(InFolder):
             started.kill("uav")
             started.start("uav")
         self.assertEqual([life.node for life in flight.lives], ["uav", "uav.agent", "uav.autopilot", "uav"])
+
+    def test_programs_beside_a_node_are_not_counted_as_nodes(self):
+        fleet = "nodes:\n  uav*: {count: 2, command: [sh], autopilot: {kind: arducopter, over: dds}}\n"
+        with mock.patch("shutil.which", lambda program: "/bin/" + program):
+            read = self.read("", fleet)
+            with contextlib.redirect_stdout(io.StringIO()) as said:
+                main.main(["run", str(self.folder / "s.yaml"), "--check"])
+        self.assertIn(": 2 nodes, ", said.getvalue())
+        self.assertEqual(read.fleet(), ["uav1", "uav2"])
+        flight = Made(read).flight
+        (self.folder / "scenario.yaml").write_text("x", encoding="utf-8")
+        report.write(read, flight, [], False, "", self.folder)
+        self.assertIn(" 2 nodes ", (self.folder / "report.html").read_text(encoding="utf-8"))
+        self.assertEqual(table.Table(read, flight, io.StringIO()).summary(1.0), "2 of 2 nodes run")
 
     def test_a_program_that_is_not_there_is_named_before_anything_starts(self):
         self.refused(2, "no program `./build/uav`", fleet="nodes:\n  uav: {command: [./build/uav]}\n")
