@@ -29,8 +29,9 @@ public:
         const std::string sent = host.empty() ? name : host;
         beast::error_code error;
         auto &lowest = beast::get_lowest_layer(_stream);
-        lowest.expires_after(Patience);
         lowest.socket().connect(_server, error);
+        if (!error)  // as a browser has it: otherwise each request after "seen" waits for 40 ms
+            lowest.socket().set_option(boost::asio::ip::tcp::no_delay(true), error);
         if (error || !ShakeHands())
             return 0;
         _stream.set_option(websocket::stream_base::decorator(
