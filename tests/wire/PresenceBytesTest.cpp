@@ -44,14 +44,21 @@ constexpr const char *AnnouncementBytes =
     "000000001032547698badcfe020000000700000067726f756e64000005000000\n"
     "7561762a00000000";
 
-// A beat with everything that a beat can have.
-Gateway::Beat FullBeat()
+// A beat without news.
+Gateway::Beat BareBeat(std::int64_t sourceNs)
 {
     Gateway::Beat beat;
     beat.format = BeatFormat::Present;
     beat.next_ms = 500;
     beat.offers = 0x01020304;
-    beat.source_ns = 0x0123456789abcdef;
+    beat.source_ns = sourceNs;
+    return beat;
+}
+
+// A beat with everything that a beat can have.
+Gateway::Beat FullBeat()
+{
+    Gateway::Beat beat = BareBeat(0x0123456789abcdef);
     Gateway::BeatNews &news = NewsOf(beat);
     news.first_state = 2;
     news.states = {1, 0xfffffffe};
@@ -82,11 +89,7 @@ Gateway::Beat FullBeat()
 // A beat of a node with problems.
 Gateway::Beat ProblemBeat()
 {
-    Gateway::Beat beat;
-    beat.format = BeatFormat::Present;
-    beat.next_ms = 500;
-    beat.offers = 0x01020304;
-    beat.source_ns = 1;
+    Gateway::Beat beat = BareBeat(1);
     BeatExtensions::Say(beat, ProblemCount{.Count = 3, .Digest = 0xfedcba98});
     return beat;
 }
@@ -94,11 +97,7 @@ Gateway::Beat ProblemBeat()
 // A beat of a node that has heard a tool.
 Gateway::Beat FleetBeat()
 {
-    Gateway::Beat beat;
-    beat.format = BeatFormat::Present;
-    beat.next_ms = 500;
-    beat.offers = 0x01020304;
-    beat.source_ns = 1;
+    Gateway::Beat beat = BareBeat(1);
     BeatExtensions::SayFleetSum(beat, 0xfedcba98);
     return beat;
 }
