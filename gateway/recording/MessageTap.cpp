@@ -21,9 +21,7 @@ MessageTap::~MessageTap() = default;
 void MessageTap::Begin()
 {
     const std::lock_guard lock(_mutex);
-    _seen = _global->GetNumberOfPosts();
-    _postsBefore = _seen;
-    _copy = _global->GetCopyOfMessage();
+    // Connected first, so that no post comes between the copy and the handler.
     _connection = RabitScopedConnection(_global->ConnectSomethingPublished(RabitQuickHandler(
         [weak = weak_from_this()]
         {
@@ -32,6 +30,13 @@ void MessageTap::Begin()
                 tap->OnPost();
             }
         })));
+    // Ends soon: whoever posts now waits in the handler for the lock.
+    do
+    {
+        _seen = _global->GetNumberOfPosts();
+        _copy = _global->GetCopyOfMessage();
+    } while (_seen != _global->GetNumberOfPosts());
+    _postsBefore = _seen;
     if (_copy->WasPosted())
     {
         Record();
