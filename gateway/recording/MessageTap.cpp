@@ -36,7 +36,6 @@ void MessageTap::Begin()
         _seen = _global->GetNumberOfPosts();
         _copy = _global->GetCopyOfMessage();
     } while (_seen != _global->GetNumberOfPosts());
-    _postsBefore = _seen;
     if (_copy->WasPosted())
     {
         Record();
@@ -46,11 +45,22 @@ void MessageTap::Begin()
 void MessageTap::OnPost()
 {
     const std::lock_guard lock(_mutex);
-    if (_global->FetchMessage(_copy.get()))
+    std::uint64_t recorded = 0;
+    std::uint64_t posts = 0;
+    do  // as in Begin
     {
-        ++_seen;
-        Record();
+        posts = _global->GetNumberOfPosts();
+        if (_global->FetchMessage(_copy.get()))
+        {
+            Record();
+            ++recorded;
+        }
+    } while (posts != _global->GetNumberOfPosts());
+    if (posts > _seen + recorded)
+    {
+        _target->Inbox().AddLost(_stream, posts - _seen - recorded);
     }
+    _seen = posts;
 }
 
 void MessageTap::Record()
@@ -68,19 +78,6 @@ void MessageTap::Record()
     {
         _target->Happened(_event);
     }
-}
-
-// The handlers of all posts before the last count have been called by now: a post that they did not see was
-// missed.
-void MessageTap::CountMissed()
-{
-    const std::lock_guard lock(_mutex);
-    if (_postsBefore > _seen)
-    {
-        _target->Inbox().AddLost(_stream, _postsBefore - _seen);
-        _seen = _postsBefore;
-    }
-    _postsBefore = _global->GetNumberOfPosts();
 }
 
 }  // namespace Rabit

@@ -14,7 +14,8 @@
 namespace Rabit
 {
 
-// Records each post of one local message, on the thread that posts it.
+// Records each post of one local message, on the thread that posts it. A post that another thread replaces
+// before it is recorded is counted as lost.
 class MessageTap : public std::enable_shared_from_this<MessageTap>
 {
 public:
@@ -27,9 +28,6 @@ public:
     ~MessageTap();
     // Records the last post, if there is one, and from then on every post. To be called once.
     void Begin();
-    // Counts posts as lost that were missed because another thread posted at the same time. To be called
-    // now and then.
-    void CountMissed();
 
 private:
     void OnPost();
@@ -43,8 +41,7 @@ private:
     RabitScopedConnection _connection;
     std::mutex _mutex;  // guards the members below: several threads may post
     std::unique_ptr<RabitMessage> _copy;
-    std::uint64_t _seen = 0;  // posts that were recorded, or counted as missed, or before the beginning
-    std::uint64_t _postsBefore = 0;  // at the last count
+    std::uint64_t _seen = 0;  // posts that were recorded, or counted as lost, or before the beginning
 };
 
 }  // namespace Rabit

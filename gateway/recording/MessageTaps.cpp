@@ -100,13 +100,6 @@ void MessageTaps::Look()
             known.Tap->Begin();
         }
     }
-    for (const auto &[name, known] : _known)
-    {
-        if (known.Tap)
-        {
-            known.Tap->CountMissed();
-        }
-    }
     if (_notRecorded.size() != notRecorded)
     {
         _target->Inbox().SetMetadata("rabit.not_recorded", {_notRecorded.begin(), _notRecorded.end()});

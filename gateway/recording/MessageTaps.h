@@ -22,7 +22,7 @@ public:
     MessageTaps(const GatewayConfig &config, RabitWorkspace &workspace,
                 std::shared_ptr<RecordingTarget> target);
     ~MessageTaps();
-    // Begins to record new messages, and counts missed posts.
+    // Begins to record new messages.
     void Look();
     // Messages that fit the rule are other nodes', as those of the configuration's rules. Any thread.
     void AddSubscription(const SubscribeRule &rule);
