@@ -9,6 +9,8 @@ import judge
 # runs other programs as well.
 SLACK_S = 1.5
 STALE_S = 1.5
+BEAT_S = 0.5
+TICK_S = 0.1
 LOST_S = 3.5
 LEASE_S = 3.0
 RECOVERY_S = 5.0
@@ -17,9 +19,12 @@ FIRST_CONTACT_S = 2.0
 
 
 class Run:
-    """A run to be judged: the ledgers, and the faults with the times at which they were done, in s."""
+    """A run to be judged: the ledgers, and the faults with the times at which they were done, in s. `waited(begin, end)`: by
+    how much the machine may have delayed what the nodes did from the begin to the end (harness.Waits). Limits of time hold
+    for what is beyond that."""
 
-    def __init__(self, ledgers, faults):
+    def __init__(self, ledgers, faults, waited=lambda begin, end: 0.0):
+        self.waited = waited
         self.lives = {node: judge.read_ledger(text) for node, text in ledgers.items()}
         self.faults = faults
         self.ended = None  # when the nodes were stopped, in s
@@ -30,6 +35,18 @@ class Run:
         none are lost. A fault takes time on a busy machine, so it is done when the next one begins."""
         lossy = [at for at, (_, what, arguments) in enumerate(self.faults) if what == "lose" and arguments[0] < 100]
         return self.faults[min(lossy[-1] + 1, len(self.faults) - 1)][0] if lossy else 0.0
+
+    def took(self, begin, end):
+        """Seconds, without those that the machine took."""
+        return end - begin - self.waited(begin, end)
+
+    def peer_states(self, life, other):
+        """[(time, state, whether the machine explains it)]: what the life saw of the other. It explains a STALE between two
+        UP before which it may have delayed beats by as much as makes a node STALE."""
+        seen = [(e.time * 1e-9, e["state"]) for e in life.of("peer") if e["node"] == other]
+        names = [state for _, state in seen]
+        return [(at, state, names[max(i - 1, 0):i + 2] == ["UP", "STALE", "UP"]
+                 and self.waited(at - 2 * STALE_S, at) >= BEAT_S) for i, (at, state) in enumerate(seen)]
 
     def all_lives(self):
         return [life for lives in self.lives.values() for life in lives]
@@ -50,11 +67,15 @@ class Run:
         return [event for life in self.lives[node] for event in life.of(kind)]
 
     def share_of_ticks(self, node, origin):
-        """Of the ticks from the first to the last that the node saw, those that it saw; and how many there were."""
-        seen = {event.number("number") for event in self.events(node, "tick")
-                if event["from"] == origin and event.time * 1e-9 > self.losing_since()}
-        span = max(seen) - min(seen) + 1 if seen else 0
-        return (len(seen) / span if span else 0.0), span
+        """Of the ticks from the first to the last that the node saw, those that it saw; how many there were; and the share
+        that the machine may have taken: the newest tick replaces one that was not fetched in time."""
+        events = [event for event in self.events(node, "tick")
+                  if event["from"] == origin and event.time * 1e-9 > self.losing_since()]
+        if not events:
+            return 0.0, 0, 0.0
+        seen = {event.number("number") for event in events}
+        span = max(seen) - min(seen) + 1
+        return len(seen) / span, span, self.waited(events[0].time * 1e-9, events[-1].time * 1e-9) / TICK_S / span
 
 
 def least(run, wanted):
@@ -79,11 +100,20 @@ def states(run, wanted):
     wrong = []
     for node, others in _all_named(wanted, run.lives):
         for other, expected in _all_named(others, set(run.lives) - {node}):
-            seen = [e["state"] for life in run.lives[node][-1:] for e in life.of("peer") if e["node"] == other]
-            seen = seen[seen.index("UP"):] if "UP" in seen else []
-            if seen != expected:
-                wrong.append(f"{node} saw {other} as {seen}, not {expected}")
+            rows = [row[1:] for life in run.lives[node][-1:] for row in run.peer_states(life, other)]
+            seen = [state for state, _ in rows]
+            first = seen.index("UP") if "UP" in seen else len(seen)
+            if not _fits(rows[first:], expected):
+                wrong.append(f"{node} saw {other} as {seen[first:]}, not {expected}")
     return wrong
+
+
+def _fits(rows, expected):
+    """True if these are the states that are expected, and besides them only those that the machine explains."""
+    if not rows:
+        return not expected
+    (state, explained), rest = rows[0], rows[1:]
+    return (explained and _fits(rest[1:], expected)) or (state in expected[:1] and _fits(rest, expected[1:]))
 
 
 def delay_p99_ms(run, wanted):
@@ -93,7 +123,7 @@ def delay_p99_ms(run, wanted):
     for (origin, node), rows in sorted(run.links().items()):
         limit = min((wanted[end] for end in (origin, node) if end in wanted), default=None)
         since = max(run.losing_since(), min(time - delay for time, delay in rows) + FIRST_CONTACT_S)
-        delays = sorted(delay for time, delay in rows if time - delay > since)
+        delays = sorted(run.took(time - delay, time) for time, delay in rows if time - delay > since)
         p99 = 1000 * delays[len(delays) * 99 // 100] if delays else 0.0
         if limit is not None and p99 > limit:
             wrong.append(f"{origin} to {node}: delay p99 {p99:.0f} ms, at most {limit} ms wanted")
@@ -113,20 +143,20 @@ def resent_at_most(run, wanted):
 
 def ticks(run, wanted):
     """{node: percent lost}: the share of its ticks that others saw, and of theirs that it saw, fits that loss: within
-    four standard deviations of the binomial distribution. Fewer by two ticks and a tenth may be seen, for on a busy
-    machine the newest tick replaces one that was not fetched in time; more may not."""
+    four standard deviations of the binomial distribution. Fewer by two ticks, a tenth and what the machine took may be seen;
+    more may not."""
     wrong = []
     for node, percent in wanted.items():
         arrives = 1 - percent / 100
         # Between two nodes that are not in `wanted`, the later fault of the two holds.
         others = [other for other in run.lives if other not in wanted and run.events(other, "tick")]
         for reader, origin in [(other, node) for other in others] + [(node, other) for other in others]:
-            share, span = run.share_of_ticks(reader, origin)
+            share, span, taken = run.share_of_ticks(reader, origin)
             if span < 50:
                 wrong.append(f"{reader} saw too few ticks of {origin} to judge: {share * span:.0f}")
                 continue
             spread = 4 * (arrives * (1 - arrives) / span) ** 0.5
-            if not arrives - spread - 0.1 - 2 / span <= share <= arrives + spread + 0.02:
+            if not arrives - spread - 0.1 - 2 / span - taken <= share <= arrives + spread + 0.02:
                 wrong.append(f"{reader} saw {100 * share:.0f} % of {span} ticks of {origin}; {percent} % are lost")
     return wrong
 
@@ -163,12 +193,13 @@ def timely(run, observer):
             wanted.append(("UP", end, recovery))
         for state, since, within in wanted:
             first = next((time for time, now in seen if now == state and time > since), None)
-            if first is None or first - since > within + (0 if state == "UP" else SLACK_S):
+            until = first or (run.ended if state == "UP" else end)
+            if run.took(since, until) > within + (0 if state == "UP" else SLACK_S):
                 wrong.append(f"{name}: {observer} saw it {state} "
                              + (f"{first - since:.1f} s after" if first else "never") + f", at most {within} s wanted")
         for pair in ((observer, node), (node, observer)):
             first = next((time for time, _ in links[pair] if time > end), None)
-            if links[pair] and (first is None or first - end > recovery):
+            if links[pair] and run.took(end, first or run.ended) > recovery:
                 wrong.append(f"{name}: first note from {pair[0]} to {pair[1]} "
                              + (f"{first - end:.1f} s after" if first else "never") + f", at most {recovery} s wanted")
     return wrong
@@ -239,7 +270,7 @@ def last_states(run, wanted):
                 if not found or seen[-1]["number"] != last["number"]:
                     wrong.append(f"{name}: shows {seen[-1]['number'] if seen else 'nothing'} at the end, not "
                                  + last["number"])
-                elif found[0].time * 1e-9 - since > wanted:
+                elif run.took(since, found[0].time * 1e-9) > wanted:
                     wrong.append(f"{name}: shown {found[0].time * 1e-9 - since:.1f} s late, at most {wanted} s wanted")
                 begun = [e for e in seen if e.time >= lives_of_origin[-1].begin and up and e.time >= up[-1]]
                 numbers = [e.number("number") for e in begun]
@@ -278,7 +309,7 @@ def honest_ages(run, wanted):
             if not at or event.time < begun or len(run.lives[event["from"]]) > 1:
                 continue
             age_s, true_s = float(event["age_s"]), (event.time - at) * 1e-9
-            if abs(age_s - true_s) > wanted:
+            if abs(age_s - true_s) - run.waited(at * 1e-9, event.time * 1e-9) > wanted:
                 wrong.append(f"{node} and {event['message']} {event['number']} of {event['from']}: age {age_s:.3f} s shown, "
                              f"posted {true_s:.3f} s before")
     return wrong
@@ -295,8 +326,8 @@ def starved_at_most(run, wanted):
             accepted = sorted(e.time for life in run.lives[origin] for e in life.of("accepted") if e["to"] == receiver)
             # The note taken at taken[i] waited from its acceptance on, and without a turn since the one before was
             # taken.
-            longest = max((now - max(before, since) for before, now, since in zip(taken, taken[1:], accepted[1:])),
-                          default=0) * 1e-9
+            longest = max((run.took(max(before, since) * 1e-9, now * 1e-9)
+                           for before, now, since in zip(taken, taken[1:], accepted[1:])), default=0)
             if longest > wanted:
                 wrong.append(f"{origin} to {receiver}: {longest:.1f} s without a turn, at most {wanted} s wanted")
     return wrong
@@ -314,7 +345,9 @@ def ticks_begin_within(run, wanted):
                 if other == node or not any(life.begin * 1e-9 < begin and life is run.lives[other][-1]
                                             for life in run.lives[other]):
                     continue
-                if not any(begin < e.time * 1e-9 <= begin + wanted for e in run.events(other, "tick") if e["from"] == node):
+                first = min((e.time * 1e-9 for e in run.events(other, "tick") if e["from"] == node and e.time * 1e-9 > begin),
+                            default=end)
+                if run.took(begin, first) > wanted:
                     wrong.append(f"{other} saw no tick of {node} within {wanted} s after its start")
     return wrong
 
@@ -337,9 +370,10 @@ def back_within(run, wanted):
         for other in run.lives:
             if other == node:
                 continue
-            seen = [(e.time * 1e-9, e["state"]) for e in run.lives[other][-1].of("peer") if e["node"] == node]
-            early = [state for time, state in seen if time <= since + wanted]
-            late = [state for time, state in seen if since + wanted < time < run.ended]
+            rows = run.peer_states(run.lives[other][-1], node)
+            early = [state for time, state, _ in rows if time <= since or run.took(since, time) <= wanted]
+            late = [state for (time, state, explained), before in zip(rows, [(0, "", False), *rows])
+                    if time > since and run.took(since, time) > wanted and time < run.ended and not explained and not before[2]]
             if early[-1:] != ["UP"] or late:
                 wrong.append(f"{other} saw {node} as {early[-1] if early else 'nothing'} {wanted} s after its last start, "
                              f"later as {late}")

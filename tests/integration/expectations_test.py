@@ -19,6 +19,12 @@ def run(faults=(), **ledgers):
     return made
 
 
+def busy(made, begin, end, seconds):
+    """The machine took so many seconds of those between begin and end, evenly."""
+    made.waited = lambda first, last: seconds * max(0, min(last, end) - max(first, begin)) / (end - begin)
+    return made
+
+
 def taken(*times):
     return [(at, f"delivered from=a life=1 id={number}") for number, at in enumerate(times, 1)]
 
@@ -56,13 +62,49 @@ class TurnsTest(unittest.TestCase):
                          ["a to b: 18.0 s without a turn, at most 5 s wanted"])
 
 
+    def test_leaves_out_the_time_that_the_machine_took(self):
+        fleet = run(a=accepted(2, 3), b=taken(3, 21))
+        self.assertEqual(expectations.starved_at_most(busy(fleet, 3, 21, 14), 5), [])
+        self.assertEqual(len(expectations.starved_at_most(busy(fleet, 3, 21, 12), 5)), 1)
+
+
+class CutTest(unittest.TestCase):
+    FAULTS = [(10, "cut", ["a"]), (20, "heal", [])]
+
+    def timely(self, *said, waited_s=0.0):
+        made = run(self.FAULTS, a=[], b=[(at, f"peer node=a state={state}") for at, state in said])
+        return expectations.timely(busy(made, 20, 30, waited_s), "b")
+
+    def test_accepts_a_cut_and_a_return_that_are_seen_soon(self):
+        self.assertEqual(self.timely((2, "UP"), (11.5, "STALE"), (13.5, "LOST"), (22, "UP")), [])
+
+    def test_finds_a_cut_that_is_never_seen(self):
+        self.assertEqual(len(self.timely((2, "UP"))), 3)
+
+    def test_finds_a_return_that_is_late_by_more_than_the_machine_took(self):
+        late = (2, "UP"), (11.5, "STALE"), (13.5, "LOST"), (40, "UP")
+        self.assertEqual(len(self.timely(*late)), 1)
+        self.assertEqual(len(self.timely(*late, waited_s=4)), 1)
+        self.assertEqual(self.timely(*late, waited_s=6), [])
+
+
 class TicksTest(unittest.TestCase):
     def test_counts_from_when_the_last_of_several_losses_was_made(self):
         seen = [(at, f"tick from=b number={at}") for at in range(2, 20)]
         seen += [(at, f"tick from=b number={at}") for at in range(20, 100, 2)]
         lossy = run([(4, "lose", [20, ["c"]]), (9, "lose", [50, ["b"]]), (19, "wait", [80])], a=seen, b=[])
-        share, span = lossy.share_of_ticks("a", "b")
-        self.assertEqual((round(share, 1), span), (0.5, 79))
+        share, span, taken = lossy.share_of_ticks("a", "b")
+        self.assertEqual((round(share, 1), span, taken), (0.5, 79, 0))
+
+    def ticks(self, waited_s):
+        seen = [(2 + number / 10, f"tick from=b number={number}") for number in range(0, 100) if number % 5]
+        return expectations.ticks(busy(run(a=seen, b=seen[:1]), 2, 12, waited_s), {"a": 0})
+
+    def test_finds_ticks_that_are_missing(self):
+        self.assertTrue(any("a saw 81 % of" in text for text in self.ticks(0)), self.ticks(0))
+
+    def test_accepts_as_many_missing_as_the_machine_took(self):
+        self.assertEqual([text for text in self.ticks(1.5) if "%" in text], [])
 
 
 class WordsTest(unittest.TestCase):
@@ -104,6 +146,18 @@ class ReturnTest(unittest.TestCase):
 
 
 class StatesTest(unittest.TestCase):
+    def stale(self, waited_s, expected):
+        seen = run(a=[(2, "peer node=b state=UP"), (9, "peer node=b state=STALE"), (9.5, "peer node=b state=UP")], b=[])
+        return expectations.states(busy(seen, 6, 9, waited_s), {"a": {"b": expected}})
+
+    def test_a_silence_is_wrong_unless_the_machine_explains_it(self):
+        self.assertEqual(len(self.stale(0.1, ["UP"])), 1)
+        self.assertEqual(self.stale(1, ["UP"]), [])
+
+    def test_a_silence_that_is_expected_may_be_explained_by_the_machine_as_well(self):
+        for waited_s in 0.1, 1:
+            self.assertEqual(self.stale(waited_s, ["UP", "STALE", "UP"]), [])
+
     def test_a_star_is_each_node_that_is_not_named(self):
         seen = run(a=[(2, "peer node=b state=UP")], b=[(2, "peer node=a state=UP"), (3, "peer node=a state=STALE")])
         self.assertEqual(expectations.states(seen, {"*": {"*": ["UP"]}}), ["b saw a as ['UP', 'STALE'], not ['UP']"])

@@ -1,12 +1,14 @@
 """What the whole-system tests share: processes that end with the test whatever happens to it, their lines as they
 come, and a network of the test's own where the machine allows it."""
 
+import bisect
 import os
 import pathlib
 import platform
 import subprocess
 import sys
 import threading
+import time
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "gateway" / "lab"))
@@ -52,6 +54,52 @@ def domain():
 def reason(error):
     """Returns an error in words, which are never empty: an error without a text must not pass for none."""
     return str(error) or repr(error)
+
+
+class Waits:
+    """How long processes were kept from running: what their threads waited for a processor, all together, and what this
+    program woke up too late. Whatever these processes do in a time, the machine has delayed it by no more than that. On an
+    idle machine it is some milliseconds a second. Times are those of the monotonic clock, in s."""
+
+    LOOK_S = 0.25
+
+    def __init__(self, pids):
+        """`pids()`: the processes that run; this one is always among them."""
+        self._pids = pids
+        self._seen = {}  # (process, thread) -> s
+        self._late = 0.0
+        self._sums = [(time.monotonic(), self._sum())]
+        self._ended = threading.Event()
+        threading.Thread(target=self._look, daemon=True).start()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._ended.set()
+
+    def _sum(self):
+        for pid in {os.getpid(), *self._pids()}:
+            for path in pathlib.Path(f"/proc/{pid}/task").glob("*/schedstat"):
+                try:
+                    self._seen[pid, path.parent.name] = int(path.read_text(encoding="ascii").split()[1]) * 1e-9
+                except (OSError, IndexError):
+                    pass  # it has ended, or the kernel does not count
+        return sum(self._seen.values())
+
+    def _look(self):
+        begin = time.monotonic()
+        while not self._ended.wait(self.LOOK_S):
+            self._late += time.monotonic() - begin - self.LOOK_S
+            begin = time.monotonic()
+            self._sums.append((begin, self._sum() + self._late))
+
+    def between(self, begin, end):
+        """From the last look before the begin to the first one after the end, or to the last one."""
+        times = [at for at, _ in self._sums]
+        first = max(bisect.bisect_right(times, begin) - 1, 0)
+        last = min(bisect.bisect_left(times, end), len(times) - 1)
+        return max(self._sums[last][1] - self._sums[first][1], 0.0)
 
 
 def run_at_once(cases):

@@ -14,10 +14,12 @@ import sys
 import time
 
 import field
+import harness
 import judge
 
 RATE = 50
-LONGEST_GAP_S = 1.0  # only ends a broken test: a busy machine may be late
+LONGEST_GAP_S = 1.0  # and what the machine took
+LIMIT_S = 180  # only ends a broken test
 UP_S, CUT_S = 6, 4
 
 
@@ -94,7 +96,8 @@ def main():
                                 f"modem:{modem}:eth1:{options.budget or ''}:{keys.get(node, '')}".rstrip(":"),
                                 *(["--to", "uav1", "--count", count, "--rate", RATE, "--capacity", 5000,
                                    "--payload", 50] if node == "ground" else [])])
-        wait_for(lambda: arrivals(ground), 30)
+        waits = harness.Waits(ground.pids)
+        wait_for(lambda: arrivals(ground), LIMIT_S)
         time.sleep(2)
         before = {device: ground.sent("ground", device) for device in ("eth0", "eth1")}
         time.sleep(UP_S - 2)
@@ -107,23 +110,26 @@ def main():
             time.sleep(CUT_S)
             ground.heal()
             time.sleep(UP_S)
-        wait_for(lambda: len(arrivals(ground)) >= count, 60)
-        wait_for(lambda: ledger(ground, "ground").count(" outcome ") >= count, 60)
+        wait_for(lambda: len(arrivals(ground)) >= count, LIMIT_S)
+        wait_for(lambda: ledger(ground, "ground").count(" outcome ") >= count, LIMIT_S)
         time.sleep(2)  # the counters in the ledger are those of the last report
         for node in ground.nodes:
             ground.signal(node, signal.SIGINT)
-        wait_for(lambda: not any(process.running() for process in ground.processes.values()), 20)
+        wait_for(lambda: not any(process.running() for process in ground.processes.values()), LIMIT_S)
         wrong = judge.judge([ledger(ground, node) for node in ground.nodes])
         at = arrivals(ground)
     assert not wrong, "\n".join(map(str, wrong))
-    gaps = []
+    gaps, wrong = [], []
     for cut in cuts:
         times = [moment for moment in at if cut - 0.5 <= moment <= cut + CUT_S]
-        gaps.append(max(later - earlier for earlier, later in zip(times, times[1:])))
+        pairs = list(zip(times, times[1:]))
+        gaps.append(max(later - earlier for earlier, later in pairs))
+        wrong += [later - earlier for earlier, later in pairs
+                  if later - earlier - waits.between(earlier, later) > LONGEST_GAP_S]
     overall = max(later - earlier for earlier, later in zip(at, at[1:]))
     print(f"{options.cuts} cuts: gap p50 {statistics.median(gaps) * 1000:.0f} ms, worst {max(gaps) * 1000:.0f} ms; "
           f"longest of all {overall * 1000:.0f} ms; {len(at)} of {count} commands, each once and in order")
-    assert max(gaps) <= LONGEST_GAP_S, gaps
+    assert not wrong, wrong
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ class Process:
         self._popen.kill()
         return self._popen.wait()
 
-    def terminate(self, seconds=20):
+    def terminate(self, seconds=120):
         """SIGTERM, and the exit code."""
         self._popen.send_signal(signal.SIGTERM)
         return self.exit_code(seconds)
@@ -163,3 +163,7 @@ class Processes:
         process = Process(argv, env)
         self._started.append(process)
         return process
+
+    def pids(self):
+        """Of those that run."""
+        return [process.pid for process in list(self._started) if process.running()]

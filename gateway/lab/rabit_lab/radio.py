@@ -32,6 +32,10 @@ class Radio:
                                   "container: --device /dev/net/tun") from error
             raise
 
+    @property
+    def pid(self):
+        return self._process.pid
+
     def tell(self, line):
         """A command of radio/Console.h, and the answer."""
         self._process.lines.clear()

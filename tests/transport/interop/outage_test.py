@@ -33,15 +33,15 @@ class Case:
     def run(self):
         ends = [Holder(), Holder()]
         try:
-            with harness.Processes() as processes:
-                self.check(ends, processes)
+            with harness.Processes() as processes, harness.Waits(processes.pids) as waits:
+                self.check(ends, processes, waits)
         except Exception as error:  # the others go on
             self.failure = harness.reason(error)
         finally:
             for end in ends:
                 end.close()
 
-    def check(self, ends, processes):
+    def check(self, ends, processes, waits):
         self.connect(ends)
         names = ("first", "second")
         nodes = [processes.start([*ends[i].inside(), self.node, "--node", names[i], "--other", names[1 - i],
@@ -62,7 +62,7 @@ class Case:
             up, _ = node.wait_for(re.compile("peer UP").fullmatch, LIMIT_S, back)
             mirrored, _ = node.wait_for(re.compile(r"resumed life=\d+ after_s=.*").fullmatch, LIMIT_S, back)
             self.recovered = max(self.recovered or 0.0, up - back, mirrored - back)
-        if self.recovered > RECOVERY_S:
+        if self.recovered - waits.between(back, back + self.recovered) > RECOVERY_S:
             raise AssertionError(f"recovered {self.recovered:.1f} s after the network's return")
         for node in nodes:
             node.wait_for(re.compile("hundred orders round=1").fullmatch, LIMIT_S, back + self.recovered)

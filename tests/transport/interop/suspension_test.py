@@ -78,15 +78,15 @@ class Case:
     def run(self):
         ends = [Holder(), Holder()]
         try:
-            with harness.Processes() as processes:
-                self.check(ends, processes)
+            with harness.Processes() as processes, harness.Waits(processes.pids) as waits:
+                self.check(ends, processes, waits)
         except Exception as error:  # the others go on
             self.failure = harness.reason(error)
         finally:
             for end in ends:
                 end.close()
 
-    def check(self, ends, processes):
+    def check(self, ends, processes, waits):
         self.connect(ends)
         self.nodes = [processes.start([*ends[i].inside(), self.node, "--node", NAMES[i], "--other", NAMES[1 - i],
                                        "--transport", self.transports[i], "--interface", "eth0", "--count", self.count,
@@ -105,10 +105,10 @@ class Case:
             settled, found = node.wait_for(TOGETHER.fullmatch, LIMIT_S)
             if found.groups() != (str(self.count), "0"):
                 raise AssertionError(f"{node.argv} said: {found.group()}")
-            self.note(settled - max(back, last_sent[node]))
+            self.note(max(back, last_sent[node]), settled, waits)
         for node in self.nodes:  # what came out of a buffer alone is no recovery
             self.follow_counters(node)
-            self.note(max((when for when, text in node.lines if re.match("resumed|peer", text)), default=0) - back)
+            self.note(back, max((when for when, text in node.lines if re.match("resumed|peer", text)), default=0), waits)
             if [text for _, text in node.lines if text.startswith("peer")][-1] != "peer UP":
                 raise AssertionError(f"{node.argv} does not see the other")
             wrong = [text for _, text in node.lines if WRONG.search(text)]
@@ -127,8 +127,10 @@ class Case:
             since, _ = node.wait_for(re.compile("ten counters").fullmatch, LIMIT_S, since)
             since += 0.001
 
-    def note(self, seconds):
-        self.recovered = max(self.recovered, seconds)
+    def note(self, begin, end, waits):
+        """Without what the machine took."""
+        if end > begin:
+            self.recovered = max(self.recovered, end - begin - waits.between(begin, end))
 
     def connect(self, ends):
         first, second = ends

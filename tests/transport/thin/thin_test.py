@@ -12,15 +12,17 @@ import time
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
 import field  # noqa: E402
+import harness  # noqa: E402
 import radio_field  # noqa: E402
 
-LIMIT_S = 60  # only keeps a broken test from hanging
+LIMIT_S = 180  # only keeps a broken test from hanging
 
 
 class Fleet:
     def __init__(self, ground, program, transport):
         self.ground, self._program, self._transport = ground, program, transport
         self._started = {}
+        self._waits = harness.Waits(ground.pids)
 
     def start(self, nodes, others, *options):
         for node in nodes:
@@ -28,19 +30,21 @@ class Fleet:
                 node, [self._program, "--node", node, "--others", others, "--transport", self._transport, *options])
 
     def matched(self, nodes):
-        """Seconds from the start of the first of them until all have matched the endpoints of all others."""
+        """Seconds from the start of the first of them until all have matched the endpoints of all others, and how many of
+        these the machine took."""
         began = min(self._started[node][0] for node in nodes)
-        return max(self._started[node][1].wait_for(lambda text: text.startswith("matched "), LIMIT_S)[0]
-                   for node in nodes) - began
+        ended = max(self._started[node][1].wait_for(lambda text: text.startswith("matched "), LIMIT_S)[0] for node in nodes)
+        return ended - began, self._waits.between(began, ended)
 
 
 def at_once(ground, program, transport, limit_s, limit_kb):
     fleet = Fleet(ground, program, transport)
     ground.reset()
     fleet.start(ground.nodes, len(ground.nodes) - 1)
-    seconds = fleet.matched(ground.nodes)
+    seconds, taken = fleet.matched(ground.nodes)
     kilobytes = ground.counters()["sent"]["ip_bytes"] / 1000
-    return f"{seconds:.1f} s, {kilobytes:.0f} kB", seconds <= limit_s and (not limit_kb or kilobytes <= limit_kb)
+    good = seconds - taken <= limit_s and (not limit_kb or kilobytes <= limit_kb)
+    return f"{seconds:.1f} s, {taken:.1f} s of it taken by the machine, {kilobytes:.0f} kB", good
 
 
 def late(ground, program, transport, period_s, limit_s):
@@ -51,8 +55,8 @@ def late(ground, program, transport, period_s, limit_s):
     fleet.start(ground.nodes[:-1], others, *options)
     time.sleep(10)
     fleet.start(ground.nodes[-1:], others, *options)
-    seconds = fleet.matched(ground.nodes[-1:])
-    return f"{seconds:.1f} s", seconds <= limit_s
+    seconds, taken = fleet.matched(ground.nodes[-1:])
+    return f"{seconds:.1f} s, {taken:.1f} s of it taken by the machine", seconds - taken <= limit_s
 
 
 # Columns: name, nodes, medium, runs, test, limits. Where one more lost datagram decides about seconds, the median of
