@@ -1,14 +1,9 @@
 #include "queues/RefusalCounts.h"
 
+#include <algorithm>
+
 namespace Rabit
 {
-namespace
-{
-
-// The names come from this process, but a loop may make up new ones for ever.
-constexpr std::size_t MostLinks = 1000;
-
-}  // namespace
 
 void RefusalCounts::Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
                         const std::string &reason, Duration now)
@@ -17,8 +12,11 @@ void RefusalCounts::Add(const std::string &node, const std::string &queue, Queue
     const std::lock_guard lock(_mutex);
     if (_entries.size() >= MostLinks && _entries.count(link) == 0)
     {
-        SetReason(_entries.begin()->second, "");
-        _entries.erase(_entries.begin());
+        const auto oldest =
+            std::min_element(_entries.begin(), _entries.end(),
+                             [](const auto &a, const auto &b) { return a.second.Last < b.second.Last; });
+        SetReason(oldest->second, "");
+        _entries.erase(oldest);
     }
     Entry &entry = _entries[link];
     const bool aboutType =

@@ -26,6 +26,9 @@ public:
 
     // A refusal is a problem for this long, unless a message is accepted earlier.
     static constexpr Duration Memory = std::chrono::minutes(1);
+    // Number of links kept, as a loop may make up new names for ever. A new one replaces the one that was
+    // refused longest ago.
+    static constexpr std::size_t MostLinks = 1000;
 
     // Counts one refused message. With an empty reason it is no problem.
     void Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,

@@ -4,10 +4,13 @@
 #include <rabit/gateway/LoadGatewayConfig.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 
+#include "configuration/ForeignEntries.h"
 #include "names/ForeignNames.h"
 
 namespace Rabit
@@ -151,6 +154,79 @@ TEST_F(ForeignConfigTest, RefusesNamesAndRangesThatCannotBe)
               "`A//B` is no name of a message or que");
     EXPECT_EQ(Refusal("publish: A, type: Uav::Pose, max_rate: -1"),
               "max_rate is out of range; expected 0 (no limit) to 1000000 a second");
+}
+
+// Returns the error of a rule that a program made, as if it stood in line 7.
+std::string RefusalOf(const std::function<void(ForeignRule &)> &spoil)
+{
+    ForeignRule rule;
+    rule.Topic = "a";
+    rule.Type = "Uav::Pose";
+    rule.Local = "A";
+    rule.Line = 7;
+    spoil(rule);
+    GatewayConfig config;
+    config.File = "uav.yaml";
+    config.Foreign = {rule};
+    try
+    {
+        CheckForeign(config, [](const std::string &) { return std::string(); });
+    }
+    catch (const ConfigError &error)
+    {
+        return error.what();
+    }
+    return "no error";
+}
+
+TEST_F(ForeignConfigTest, RefusesAStaleAfterBelowZeroAndAboveADay)
+{
+    EXPECT_EQ(Refusal("subscribe: a, type: Uav::Pose, as: A, stale_after: 1441min"),
+              "`stale_after` is out of range; expected 0s (never) to a day");
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.StaleAfter = -1ms; }),
+              "uav.yaml:7: `stale_after` is out of range; expected 0s (never) to a day");
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.StaleAfter = 24h + 1ms; }),
+              "uav.yaml:7: `stale_after` is out of range; expected 0s (never) to a day");
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.StaleAfter = 24h; }), "no error");
+}
+
+TEST_F(ForeignConfigTest, RefusesAMaxRateBelowZeroAboveAMillionAndNone)
+{
+    constexpr auto error = "uav.yaml:7: max_rate is out of range; expected 0 (no limit) to 1000000 a second";
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.MaxRate = -0.1; }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.MaxRate = 1e6 + 1; }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.MaxRate = std::nan(""); }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.MaxRate = 1e6; }), "no error");
+}
+
+TEST_F(ForeignConfigTest, RefusesADepthOfNoneAndAboveTenThousand)
+{
+    constexpr auto error = "uav.yaml:7: `depth` is out of range; expected 1 to 10000";
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.Depth = 0; }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.Depth = 10'001; }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.Depth = 10'000; }), "no error");
+}
+
+TEST_F(ForeignConfigTest, RefusesACapacityOfNoneAndAboveAMillion)
+{
+    constexpr auto error = "uav.yaml:7: `capacity` is out of range; expected 1 to 1000000";
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.Capacity = 0; }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.Capacity = 1'000'001; }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.Capacity = 1'000'000; }), "no error");
+}
+
+TEST_F(ForeignConfigTest, RefusesCapacityBytesOfNoneAndAboveATebibyte)
+{
+    constexpr auto error = "uav.yaml:7: `capacity_bytes` is out of range; expected 1 to 1099511627776";
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.CapacityBytes = 0; }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.CapacityBytes = (std::size_t{1} << 40) + 1; }), error);
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.CapacityBytes = std::size_t{1} << 40; }), "no error");
+}
+
+TEST_F(ForeignConfigTest, RefusesATopicNameAbove255Letters)
+{
+    EXPECT_EQ(RefusalOf([](ForeignRule &rule) { rule.Topic.assign(255, 'a'); }), "no error");
+    EXPECT_NE(RefusalOf([](ForeignRule &rule) { rule.Topic.assign(256, 'a'); }), "no error");
 }
 
 TEST_F(ForeignConfigTest, RefusesATopicOrMessageOfTwoTypes)
