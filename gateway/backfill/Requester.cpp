@@ -46,7 +46,7 @@ void Requester::SetNode(const std::string &name, std::uint64_t incarnation, bool
         {
             wanted.NextSpans = now;
             wanted.NextLook = now;
-            wanted.Look = ShortestLook;
+            wanted.Look.Reset();
         }
         if (came && wanted.Open)
         {
@@ -240,8 +240,8 @@ std::optional<std::pair<Series, Range>> Requester::TakePosts(const std::string &
     }
     if (asked.LooksAtNewest)
     {
-        wanted.Look = posts->empty() ? std::min(2 * wanted.Look, LongestLook) : ShortestLook;
-        wanted.NextLook = now + wanted.Look;
+        posts->empty() ? static_cast<void>(wanted.Look.Next()) : wanted.Look.Reset();
+        wanted.NextLook = now + wanted.Look.Interval();
     }
     const double share = std::min(
         1.0, static_cast<double>(answer.bytes.size()) / static_cast<double>(PostAnswers::LargestAnswer));

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -94,7 +96,7 @@ private:
         std::optional<Asked> Open;
         Duration NextSpans{0};
         Duration NextLook{0};
-        Duration Look = ShortestLook;
+        Backoff Look{{ShortestLook, LongestLook}};
         Duration NotBefore{0};
         std::string Refusal;
     };

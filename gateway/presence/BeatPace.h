@@ -77,7 +77,7 @@ private:
     Duration _due{0};
     Duration _promised{0};
     Duration _step = Duration::max();  // to the beat after the next one; more than the period: the period
-    Duration _gap = ShortestGap;
+    Duration _gap = ShortestGap;       // no Backoff: its limits change with the period and with `delay`
     Duration _longestGap = LongestPeriod;
     int _quick = 0;                  // beats that were brought forward since the gap was shortest
     Duration _series = ShortestGap;  // first step of the last introduction

@@ -118,7 +118,7 @@ void RejoinDecision::Joined(TimePoint now, std::vector<HostNetwork> with)
     _with = std::move(with);
     _lastJoin = now;
     _retryAt.reset();
-    _retry = std::chrono::milliseconds(0);
+    _retry.Reset();
     _gone.clear();
     _allGone.reset();
 }
@@ -129,8 +129,7 @@ void RejoinDecision::Failed(TimePoint now)
     _with.clear();
     _gone.clear();
     _allGone.reset();
-    _retry = std::clamp(2 * _retry, _times.Retry, _times.LongestRetry);
-    _retryAt = now + _retry;
+    _retryAt = now + _retry.Next();
 }
 
 void RejoinDecision::Follow(TimePoint now, const View &view)

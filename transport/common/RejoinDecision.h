@@ -15,6 +15,8 @@
 // Pure: no thread, no clock, no system call.
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <deque>
 #include <map>
@@ -93,7 +95,7 @@ private:
     std::vector<HostNetwork> _with;
     std::optional<TimePoint> _lastJoin;
     std::optional<TimePoint> _retryAt;
-    std::chrono::milliseconds _retry{0};
+    Backoff _retry{{_times.Retry, _times.LongestRetry}};
     std::map<Key, Seen> _usable;                             // the usable networks now
     std::map<std::string, std::deque<TimePoint>> _vanished;  // by interface: when it vanished, within Memory
     std::map<Key, TimePoint> _gone;     // networks of _with without a carrier or worse: since when

@@ -23,7 +23,7 @@ LinkPeer::LinkPeer(LinkContext &context, std::string name, LinkTime now)
       _name(std::move(name)),
       _ownLife(context.Incarnation),
       _heardAt(now),
-      _helloGap(context.Settings.HelloGap),
+      _helloGap({context.Settings.HelloGap, context.Settings.HelloPeriod}),
       _path(context.Settings, context.Starting)
 {
 }
@@ -81,7 +81,7 @@ bool LinkPeer::HeardOf(std::uint64_t incarnation, LinkTime now)
         _incarnation = incarnation;
         _token = {};
         _knowsMe = false;
-        _helloGap = _context.Settings.HelloGap;
+        _helloGap.Reset();
         _receiverOf.clear();
         _unknownLinks.clear();
         _refusals.clear();
@@ -171,7 +171,7 @@ void LinkPeer::OnFrame(const LinkFrame &frame, LinkTime now)
         HelloSoon(now);
         return;
     }
-    _helloGap = _context.Settings.HelloGap;
+    _helloGap.Reset();
     _knowsMe = frame.Echo.Clock == _context.Clock || (_knowsMe && frame.Echo.Clock == 0);
     if (frame.Ask && !frame.HasData)
     {
@@ -303,7 +303,8 @@ void LinkPeer::Refuse(const LinkData &data)
 
 void LinkPeer::HelloSoon(LinkTime now)
 {
-    const LinkTime earliest = _lastHelloAt == LinkNever ? now : std::max(now, _lastHelloAt + _helloGap);
+    const LinkTime earliest =
+        _lastHelloAt == LinkNever ? now : std::max(now, _lastHelloAt + _helloGap.Interval());
     _helloAt = std::min(_helloAt, earliest);
 }
 
@@ -311,7 +312,7 @@ void LinkPeer::OnOwnRaise(LinkTime now)
 {
     _ownLife = _context.Incarnation;
     _knowsMe = false;
-    _helloGap = _context.Settings.HelloGap;
+    _helloGap.Reset();
     _receiverOf.clear();
     _unknownLinks.clear();
     _refusals.clear();

@@ -6,6 +6,7 @@
 #include "PathControl.h"
 #include "PeerToken.h"
 
+#include <rabit/base/Backoff.h>
 #include <rabit/gateway/links/LinkTime.h>
 
 #include <cstdint>
@@ -54,8 +55,8 @@ public:
     bool IsUnheardAt(LinkTime now) const { return now - _heardAt >= _context.Settings.SilentAfter; }
     LinkTime HeardAt() const { return _heardAt; }
 
-    // True if a frame that asks is unanswered for longer than answers take. A wireless network may well be silent for
-    // some tens of milliseconds.
+    // True if a frame that asks is unanswered for longer than answers take. A wireless network may well be
+    // silent for some tens of milliseconds.
     static constexpr LinkTime ShortestDoubt = std::chrono::milliseconds(100);
     bool IsUnansweredAt(LinkTime now) const
     {
@@ -147,8 +148,7 @@ private:
     LinkTime _askedAt{0};
     bool _silent = false;  // for SilentAfter
     LinkTime _helloAt = LinkNever;
-    LinkTime _helloGap;  // least time to the next hello; doubles until a frame of both present incarnations
-                         // comes
+    Backoff _helloGap;  // least time to the next hello; reset by a frame of both present incarnations
     LinkTime _lastHelloAt = LinkNever;  // LinkNever: none was sent
     PathControl _path;
     Senders _senders;

@@ -261,8 +261,8 @@ void LinkPeer::SendHello(LinkTime now)
     const bool wanted = !IsOpen() && HasPending();
     frame.Ask = wanted;
     _lastHelloAt = now;
-    _helloGap = std::min(2 * _helloGap, _context.Settings.HelloPeriod);
-    const LinkTime step = _silent ? _context.Settings.SilentHelloPeriod : _helloGap;
+    _helloGap.Next();
+    const LinkTime step = _silent ? _context.Settings.SilentHelloPeriod : _helloGap.Interval();
     _helloAt = wanted ? now + step : LinkNever;
     Send(frame, wanted, now);
 }

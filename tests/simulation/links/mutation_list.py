@@ -120,7 +120,7 @@ MUTATIONS = [
     Mutation("S6 for any number", "LinkNode.cpp", "if ((incarnation >> 32) > LinkLargestClaim)", "if (false)", "direct"),
     Mutation("S6 any incarnation of a peer is believed", "LinkPeer.cpp", "if (IsIncredible(frame))", "if (false)", "direct"),
     Mutation("S6 hellos to a peer that makes no sense of them go on", "LinkPeerSending.cpp",
-             "_helloGap = std::min(2 * _helloGap, _context.Settings.HelloPeriod);", "", "direct"),
+             "_helloGap.Next();", "", "direct"),
     Mutation("S7 nothing is given up", "LinkSender.cpp", "if (!open) { SettleExpired(now); return; }",
              "if (!open) { return; }", "direct"),
     Mutation("S7 what may have arrived has expired", "LinkSender.cpp",

@@ -11,7 +11,9 @@ AnnouncementPace::AnnouncementPace(std::chrono::milliseconds period, bool hasCar
       _usual(period / 2),
       _gap({std::min<Backoff::Duration>(FirstGap, period / 2),
             std::min<Backoff::Duration>(LongestGap, period / 2)}),
-      _initial(hasCard ? InitialRoundsWithCard : InitialRounds)
+      _initial({.First = 2 * _firstInitial,
+                .Longest = Backoff::Duration::max(),
+                .Most = hasCard ? InitialRoundsWithCard : InitialRounds})
 {
 }
 
@@ -19,14 +21,11 @@ void AnnouncementPace::Begin(std::uint64_t content, std::uint64_t heard, TimePoi
 {
     if (!_begun)
     {
-        _initialGap = _firstInitial;
-        _nextInitial = now + _firstInitial;
+        _initial.Begin(now + _firstInitial);
     }
-    else if (_initial > 0 && now >= _nextInitial)
+    else if (_initial.IsDue(now))
     {
-        --_initial;
-        _initialGap *= 2;
-        _nextInitial = now + _initialGap;
+        _initial.Done(now);
     }
     if (!_begun || now - *_begun >= Rest)
     {
@@ -47,7 +46,7 @@ void AnnouncementPace::Begin(std::uint64_t content, std::uint64_t heard, TimePoi
 // that.
 bool AnnouncementPace::IsWanted(std::uint64_t heard, TimePoint now) const
 {
-    return heard != _heard || (_initial > 0 && now >= _nextInitial) || now - *_begun >= _usual;
+    return heard != _heard || _initial.IsDue(now) || now - *_begun >= _usual;
 }
 
 bool AnnouncementPace::MayGo(Destination destination, std::uint64_t content, std::uint64_t heard,
@@ -73,9 +72,9 @@ std::optional<AnnouncementPace::TimePoint> AnnouncementPace::Due() const
     {
         due = *_begun + _gap.Interval();
     }
-    if (_begun && _initial > 0 && (!due || _nextInitial < *due))
+    if (_initial.Due() && (!due || *_initial.Due() < *due))
     {
-        due = std::max(_nextInitial, *_begun + _gap.Interval());
+        due = std::max(*_initial.Due(), *_begun + _gap.Interval());
     }
     return due;
 }

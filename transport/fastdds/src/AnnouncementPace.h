@@ -58,9 +58,7 @@ private:
     std::uint64_t _heard = 0;
     Backoff _gap;  // to the next round
     bool _owed = false;
-    int _initial;  // still to come
-    std::chrono::steady_clock::duration _initialGap{};
-    TimePoint _nextInitial{};
+    BackoffTimer<TimePoint> _initial;  // the first rounds, which it requests by itself
 };
 
 }  // namespace Rabit::FastDds
