@@ -1,8 +1,7 @@
-#include <rabit/gateway/ConfigError.h>
-
 #include <algorithm>
 #include <map>
 
+#include "configuration/ConfigCheck.h"
 #include "configuration/ForeignEntries.h"
 #include "names/ForeignNames.h"
 #include "names/NamePattern.h"
@@ -22,13 +21,10 @@ struct Said
 };
 using SaidOf = std::map<std::string, Said>;
 
-class ForeignChecks
+class ForeignChecks : ConfigCheck
 {
 public:
-    ForeignChecks(const GatewayConfig &config, const TypeCheck &whyNoType)
-        : _config(config), _whyNoType(whyNoType)
-    {
-    }
+    using ConfigCheck::ConfigCheck;
 
     void Run()
     {
@@ -56,11 +52,6 @@ public:
     }
 
 private:
-    [[noreturn]] void Fail(int line, const std::string &message) const
-    {
-        throw ConfigError(_config.File, line, message);
-    }
-
     static bool IsSubscribed(const ForeignRule &rule)
     {
         return rule.Way == ForeignRule::Direction::Subscribe;
@@ -80,11 +71,7 @@ private:
         {
             Fail(rule.Line, "`" + topic + "` is a topic of the gateways themselves");
         }
-        const std::string whyNoType = _whyNoType(rule.Type);
-        if (!whyNoType.empty())
-        {
-            Fail(rule.Line, whyNoType);
-        }
+        CheckType(rule.Type, rule.Line);
         if (!IsMessageName(rule.Local))
         {
             Fail(rule.Line,
@@ -94,7 +81,7 @@ private:
         CheckRanges(rule);
         CheckOneType(_topics, topic, WireTypeOf(rule), "the topic", rule.Line);
         CheckLocal(rule);
-        CheckOnce(IsSubscribed(rule) ? _subscribed : _published, topic, rule.Line);
+        CheckOnce(IsSubscribed(rule) ? _subscribed : _published, topic, "foreign", rule.Line);
     }
 
     void CheckRanges(const ForeignRule &rule) const
@@ -103,22 +90,10 @@ private:
         {
             Fail(rule.Line, "`stale_after` is out of range; expected 0s (never) to a day");
         }
-        if (!(rule.MaxRate >= 0.0 && rule.MaxRate <= 1e6))
-        {
-            Fail(rule.Line, "max_rate is out of range; expected 0 (no limit) to 1000000 a second");
-        }
-        if (rule.Depth < 1 || rule.Depth > 10'000)
-        {
-            Fail(rule.Line, "`depth` is out of range; expected 1 to 10000");
-        }
-        if (rule.Capacity < 1 || rule.Capacity > 1'000'000)
-        {
-            Fail(rule.Line, "`capacity` is out of range; expected 1 to 1000000");
-        }
-        if (rule.CapacityBytes < 1 || rule.CapacityBytes > std::size_t{1} << 40)
-        {
-            Fail(rule.Line, "`capacity_bytes` is out of range; expected 1 to 1099511627776");
-        }
+        CheckMaxRate(rule.MaxRate, rule.Line);
+        CheckRange(rule.Depth, 10'000, "depth", rule.Line);
+        CheckRange(rule.Capacity, 1'000'000, "capacity", rule.Line);
+        CheckRange(rule.CapacityBytes, std::size_t{1} << 40, "capacity_bytes", rule.Line);
     }
 
     void CheckLocal(const ForeignRule &rule)
@@ -130,7 +105,7 @@ private:
         CheckOneType(_messages, rule.Local, rule.Type, "the message", rule.Line);
         if (IsSubscribed(rule))
         {
-            CheckOnce(_posted, rule.Local, rule.Line);
+            CheckOnce(_posted, rule.Local, "foreign", rule.Line);
             if (rule.Local.rfind(_config.Name + "/", 0) == 0)
             {
                 Fail(rule.Line, "`" + rule.Local + "` belongs to the gateway; expected another name");
@@ -151,17 +126,6 @@ private:
         }
     }
 
-    void CheckOnce(std::map<std::string, int> &seen, const std::string &name, int line) const
-    {
-        const auto [place, isNew] = seen.emplace(name, line);
-        if (!isNew)
-        {
-            Fail(line,
-                 "`" + name + "` stands twice under `foreign`" +
-                     (place->second > 0 ? " (first in line " + std::to_string(place->second) + ")" : ""));
-        }
-    }
-
     // Fails if `written` would write a message back to the topic from which another rule reads it.
     void CheckNoEcho(const ForeignRule &written) const
     {
@@ -176,8 +140,6 @@ private:
         }
     }
 
-    const GatewayConfig &_config;
-    const TypeCheck &_whyNoType;
     SaidOf _topics;
     SaidOf _messages;
     std::map<std::string, int> _subscribed;

@@ -8,10 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
-#include <utility>
 
-#include "air/AirSchedule.h"
+#include "configuration/ConfigCheck.h"
 #include "configuration/ForeignEntries.h"
 #include "names/NamePattern.h"
 #include "wire/Announcements.h"
@@ -21,17 +19,12 @@ namespace Rabit
 namespace
 {
 
-// Prefix of the gateways' own topics.
-constexpr const char *OwnTopics = "rabit/";
 constexpr double LargestBudget = 1e9;
 
-class Validator
+class Validator : ConfigCheck
 {
 public:
-    Validator(const GatewayConfig &config, const TypeCheck &whyNoType)
-        : _config(config), _whyNoType(whyNoType)
-    {
-    }
+    using ConfigCheck::ConfigCheck;
 
     void Run() const
     {
@@ -41,29 +34,13 @@ public:
         CheckNetwork();
         CheckRadio(_config.Radio, "");
         CheckPaths();
-        CheckRecord();
-        CheckFetch();
-        CheckPublish();
-        CheckSubscribe();
-        CheckTopicTypes();
-        CheckAccept();
-        CheckSend();
+        CheckRecording(_config, _whyNoType);
+        CheckMessages(_config, _whyNoType);
         CheckForeign(_config, _whyNoType);
         CheckAnnouncement();
     }
 
 private:
-    [[noreturn]] void Fail(int line, const std::string &message) const
-    {
-        throw ConfigError(_config.File, line, message);
-    }
-
-    int LineOf(const std::string &key) const
-    {
-        const auto found = _config.Lines.find(key);
-        return found == _config.Lines.end() ? 0 : found->second;
-    }
-
     void CheckNode() const
     {
         if (!IsNodeName(_config.Node))
@@ -222,297 +199,6 @@ private:
         }
     }
 
-    void CheckRecord() const
-    {
-        if (!_config.Record)
-        {
-            return;
-        }
-        const RecordSettings &record = *_config.Record;
-        if (record.Folder.empty())
-        {
-            Fail(LineOf("record.folder"), "no folder for recordings; expected `folder: <path>`");
-        }
-        if (record.SplitTime < std::chrono::seconds(1) || record.SplitTime > std::chrono::hours(24))
-        {
-            Fail(LineOf("record.split_time"), "`split_time` is out of range; expected 1s to 1440min");
-        }
-        CheckMessagePatterns(record.Messages, "messages", LineOf("record.messages"));
-        CheckMessagePatterns(record.Except, "except", LineOf("record.except"));
-        CheckMessagePatterns(record.Steps, "steps", LineOf("record.steps"), "name of a manager");
-        if (record.BlackBox)
-        {
-            CheckBlackBox(*record.BlackBox);
-        }
-        CheckBackfill(record);
-    }
-
-    void CheckBackfill(const RecordSettings &record) const
-    {
-        const int line = LineOf("record.backfill");
-        for (const std::string &message : record.Backfill)
-        {
-            if (std::none_of(_config.Subscribe.begin(), _config.Subscribe.end(),
-                             [&message](const SubscribeRule &rule) { return rule.Message == message; }))
-            {
-                std::vector<std::string> names;
-                for (const SubscribeRule &rule : _config.Subscribe)
-                {
-                    names.push_back(rule.Message);
-                }
-                Fail(line, "`backfill` names `" + message + "`, which no `subscribe` entry names" +
-                               NearestWordHint(message, names));
-            }
-        }
-        CheckNoneTwice(record.Backfill, "backfill", line);
-        if (!record.Backfill.empty() && record.BlackBox)
-        {
-            Fail(line,
-                 "`backfill` needs a recording of everything, and `black_box` drops most of it; remove "
-                 "one of them");
-        }
-        if (record.BackfillLast < std::chrono::seconds(1) || record.BackfillLast > std::chrono::hours(24))
-        {
-            Fail(LineOf("record.backfill_last"), "`backfill_last` is out of range; expected 1s to 1440min");
-        }
-        if (record.BackfillTo && !record.BackfillTo->empty())
-        {
-            CheckPatterns(*record.BackfillTo, "backfill_to", LineOf("record.backfill_to"));
-        }
-    }
-
-    void CheckFetch() const
-    {
-        if (!_config.Fetch)
-        {
-            return;
-        }
-        if (_config.Fetch->Folder.empty())
-        {
-            Fail(LineOf("fetch.folder"), "no folder of files to fetch; expected `folder: <path>`");
-        }
-        if (_config.Fetch->From.empty())
-        {
-            Fail(LineOf("fetch.from"), "nobody may fetch; expected `from: [<node>]`");
-        }
-        CheckPatterns(_config.Fetch->From, "from", LineOf("fetch.from"));
-    }
-
-    void CheckBlackBox(const BlackBoxSettings &box) const
-    {
-        for (const auto &[key, time] : {std::pair("before", box.Before), std::pair("after", box.After)})
-        {
-            if (time < std::chrono::seconds(1) || time > std::chrono::hours(1))
-            {
-                Fail(LineOf(std::string("record.black_box.") + key),
-                     std::string("`") + key + "` is out of range; expected 1s to 60min");
-            }
-        }
-        CheckMessagePatterns(box.Messages, "messages", LineOf("record.black_box.messages"));
-        CheckMessagePatterns(box.Queues, "queues", LineOf("record.black_box.queues"));
-    }
-
-    void CheckMessagePatterns(const std::vector<std::string> &patterns, const char *key, int line,
-                              const std::string &what = "message name") const
-    {
-        for (const std::string &pattern : patterns)
-        {
-            if (!IsMessageName(WithoutWildcards(pattern)))
-            {
-                Fail(line, "`" + pattern + "` in `" + key + "` is no " + what +
-                               "; `*` and `?` stand for any characters");
-            }
-        }
-        CheckNoneTwice(patterns, key, line);
-    }
-
-    void CheckImportance(TrafficClass traffic, double weight, int line) const
-    {
-        if (traffic == TrafficClass::Presence)
-        {
-            Fail(line, "the class presence is the gateway's own; expected another one");
-        }
-        if (!(weight >= AirSchedule::SmallestWeight && weight <= AirSchedule::LargestWeight))
-        {
-            Fail(line, "`weight` is out of range; expected 0.01 to 100");
-        }
-    }
-
-    void CheckNoneTwice(const std::vector<std::string> &list, const char *key, int line) const
-    {
-        std::set<std::string> seen;
-        for (const std::string &entry : list)
-        {
-            if (!seen.insert(entry).second)
-            {
-                Fail(line, "`" + entry + "` stands twice under `" + key + "`");
-            }
-        }
-    }
-
-    void CheckType(const std::string &type, int line) const
-    {
-        const std::string why = _whyNoType(type);
-        if (!why.empty())
-        {
-            Fail(line, why);
-        }
-    }
-
-    void CheckName(const std::string &name, const char *what, int line) const
-    {
-        if (!IsMessageName(name))
-        {
-            Fail(line, "`" + name + "` is no " + what + " name; expected 1 to 200 of A-Z a-z 0-9 _ . - : /");
-        }
-    }
-
-    static std::string FirstIn(int line)
-    {
-        return line > 0 ? " (first in line " + std::to_string(line) + ")" : "";
-    }
-
-    // Remembers a name; fails if it was there before.
-    void CheckOnce(std::map<std::string, int> &seen, const std::string &name, const char *list,
-                   int line) const
-    {
-        const auto [place, isNew] = seen.emplace(name, line);
-        if (!isNew)
-        {
-            Fail(line, "`" + name + "` stands twice under `" + list + "`" + FirstIn(place->second));
-        }
-    }
-
-    void CheckPublish() const
-    {
-        std::map<std::string, int> seen;
-        for (const PublishRule &rule : _config.Publish)
-        {
-            CheckName(rule.Message, "message", rule.Line);
-            if (rule.Message.find('/') != std::string::npos)
-            {
-                Fail(rule.Line,
-                     "`" + rule.Message +
-                         "` belongs to another node or to the gateway; expected a name without `/`");
-            }
-            CheckOnce(seen, rule.Message, "publish", rule.Line);
-            CheckType(rule.Type, rule.Line);
-            if (!(rule.MaxRate >= 0.0 && rule.MaxRate <= 1e6))
-            {
-                Fail(rule.Line, "max_rate is out of range; expected 0 (no limit) to 1000000 a second");
-            }
-            CheckImportance(rule.Class.value_or(TrafficClass::State), rule.Weight, rule.Line);
-        }
-    }
-
-    void CheckSubscribe() const
-    {
-        std::map<std::string, int> seen;
-        for (const SubscribeRule &rule : _config.Subscribe)
-        {
-            CheckName(rule.Message, "message", rule.Line);
-            CheckOnce(seen, rule.Message, "subscribe", rule.Line);
-            CheckType(rule.Type, rule.Line);
-            CheckPatterns(rule.From, "from", rule.Line);
-            if (rule.Message.rfind(OwnTopics, 0) == 0)
-            {
-                Fail(rule.Line, "`" + rule.Message + "` is a topic of the gateways themselves");
-            }
-        }
-    }
-
-    // A DDS topic has one type. A local message and the message of that name from other nodes are different
-    // messages here, but share one topic.
-    void CheckTopicTypes() const
-    {
-        for (const SubscribeRule &wanted : _config.Subscribe)
-        {
-            const auto offered =
-                std::find_if(_config.Publish.begin(), _config.Publish.end(),
-                             [&wanted](const PublishRule &rule) { return rule.Message == wanted.Message; });
-            if (offered != _config.Publish.end() && offered->Type != wanted.Type)
-            {
-                Fail(wanted.Line, "`" + wanted.Message + "` is subscribed as `" + wanted.Type +
-                                      "` and published as `" + offered->Type + "`" +
-                                      (offered->Line > 0 ? " in line " + std::to_string(offered->Line) : "") +
-                                      "; a message has one type");
-            }
-        }
-    }
-
-    void CheckPatterns(const std::vector<std::string> &patterns, const char *key, int line) const
-    {
-        if (patterns.empty())
-        {
-            Fail(line, std::string("`") + key + "` is empty; expected node names, `*` and `?` stand for any");
-        }
-        for (const std::string &pattern : patterns)
-        {
-            CheckPattern(pattern, key, line);
-        }
-        CheckNoneTwice(patterns, key, line);
-    }
-
-    static std::string WithoutWildcards(std::string pattern)
-    {
-        std::replace_if(
-            pattern.begin(), pattern.end(), [](char c) { return c == '*' || c == '?'; }, 'x');
-        return pattern;
-    }
-
-    void CheckPattern(const std::string &pattern, const char *key, int line) const
-    {
-        if (!IsNodeName(WithoutWildcards(pattern)))
-        {
-            Fail(line,
-                 "`" + pattern + "` in `" + key + "` is no node name; `*` and `?` stand for any characters");
-        }
-    }
-
-    void CheckAccept() const
-    {
-        std::map<std::string, int> seen;
-        for (const AcceptRule &rule : _config.Accept)
-        {
-            CheckName(rule.Queue, "queue", rule.Line);
-            CheckOnce(seen, rule.Queue, "accept", rule.Line);
-            if (rule.Types.empty())
-            {
-                Fail(rule.Line, "queue `" + rule.Queue + "` accepts no types; expected a list of IDL types");
-            }
-            std::map<std::string, int> types;
-            for (const std::string &type : rule.Types)
-            {
-                CheckType(type, rule.Line);
-                CheckOnce(types, type, "types", rule.Line);
-            }
-            CheckPatterns(rule.From, "from", rule.Line);
-        }
-    }
-
-    void CheckSend() const
-    {
-        std::map<std::string, int> seen;
-        for (const SendRule &rule : _config.Send)
-        {
-            CheckPattern(rule.To, "to", rule.Line);
-            if (!IsMessageName(WithoutWildcards(rule.Queue)))
-            {
-                CheckName(rule.Queue, "queue", rule.Line);
-            }
-            CheckOnce(seen, rule.To + "/" + rule.Queue, "send", rule.Line);
-            CheckReached(rule);
-            CheckRange(rule.Capacity, 1'000'000, "capacity", rule.Line);
-            CheckRange(rule.CapacityBytes, std::size_t{1} << 40, "capacity_bytes", rule.Line);
-            CheckRange(rule.Window, 256, "window", rule.Line);
-            CheckImportance(rule.Class, rule.Weight, rule.Line);
-            if (rule.Expire < std::chrono::milliseconds(0) || rule.Expire > std::chrono::hours(24 * 365))
-            {
-                Fail(rule.Line, "`expire` is out of range; expected 0 (never) to a year");
-            }
-        }
-    }
-
     // Fails if the announcement is too large: other nodes would ignore it, and no log would say why.
     void CheckAnnouncement() const
     {
@@ -522,37 +208,6 @@ private:
             Fail(0, excess);
         }
     }
-
-    // Fails if an earlier rule fits all links of this one: the first rule that fits a link holds, so this
-    // one would do nothing.
-    void CheckReached(const SendRule &rule) const
-    {
-        for (const SendRule &before : _config.Send)
-        {
-            if (&before == &rule)
-            {
-                return;
-            }
-            if (CoversPattern(before.To, rule.To) && CoversPattern(before.Queue, rule.Queue))
-            {
-                Fail(rule.Line, "this `send` entry is never used: `" + before.To + "/" + before.Queue + "`" +
-                                    (before.Line > 0 ? " in line " + std::to_string(before.Line) : "") +
-                                    " fits all that `" + rule.To + "/" + rule.Queue +
-                                    "` fits, and the first that fits holds");
-            }
-        }
-    }
-
-    void CheckRange(std::size_t value, std::size_t most, const char *key, int line) const
-    {
-        if (value < 1 || value > most)
-        {
-            Fail(line, std::string("`") + key + "` is out of range; expected 1 to " + std::to_string(most));
-        }
-    }
-
-    const GatewayConfig &_config;
-    const TypeCheck &_whyNoType;
 };
 
 }  // namespace
