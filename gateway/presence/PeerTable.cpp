@@ -6,11 +6,8 @@
 #include <utility>
 
 #include "names/NodeTag.h"
-#include "names/TakeTurns.h"
 #include "presence/Whereabouts.h"
-#include "wire/Announcements.h"
 #include "wire/BeatExtensions.h"
-#include "wire/BeatNews.h"
 
 namespace Rabit
 {
@@ -30,13 +27,6 @@ std::string NoBeatWithin(PeerTable::Duration limit)
     std::snprintf(text, sizeof text, "no beat within its limit of %g s",
                   std::chrono::duration<double>(limit).count());
     return text;
-}
-
-// Where the beat says that its node runs, or else the place that was known.
-std::string PlaceIn(const Gateway::Beat &beat, const std::string &known)
-{
-    std::string place = Whereabouts::In(beat);
-    return place.empty() ? known : place;
 }
 
 }  // namespace
@@ -178,7 +168,7 @@ bool PeerTable::SetState(Peer &peer, NodeState state, const std::string &reason)
 bool PeerTable::NoteTwin(Peer &peer, const HeardBeat &heard)
 {
     const Duration now = heard.Arrival;
-    peer.TwinPlace = PlaceIn(heard.Beat, peer.TwinPlace);
+    peer.TwinPlace = Whereabouts::In(heard.Beat, peer.TwinPlace);
     if (now - peer.TwinSince > TwinMemory)
     {
         peer.TwinBeats = 1;
@@ -201,7 +191,7 @@ PeerTable::Change PeerTable::OnOwnName(const HeardBeat &heard)
     {
         _ownTwinBeats = heard.Arrival - _ownTwinSince > TwinMemory ? 1 : _ownTwinBeats + 1;
         _ownTwinSince = heard.Arrival;
-        _ownTwinPlace = PlaceIn(heard.Beat, _ownTwinPlace);
+        _ownTwinPlace = Whereabouts::In(heard.Beat, _ownTwinPlace);
         change.State = !_ownTwice && _ownTwinBeats >= BeatsOfATwin;
         _ownTwice = _ownTwice || change.State;
         _nextChange = std::min(_nextChange, OwnChange());
@@ -249,149 +239,6 @@ PeerTable::Change PeerTable::OnBeat(const HeardBeat &heard)
     }
     Expect(*peer);
     return change;
-}
-
-// Returns whether it has changed. The end of the problems may be lost: they are forgotten after some time.
-bool PeerTable::TakeProblems(Peer &peer, const HeardBeat &heard)
-{
-    const ProblemCount before = peer.Problems;
-    if (const std::optional<ProblemCount> told = BeatExtensions::ProblemsIn(heard.Beat))
-    {
-        peer.Problems = *told;
-        peer.HasToldProblems = true;
-        peer.ProblemsTold = heard.Arrival;
-    }
-    else if (heard.Arrival - peer.ProblemsTold > std::max(ProblemMemory, 2 * peer.LostAfter()))
-    {
-        peer.Problems = {};
-    }
-    return before != peer.Problems;
-}
-
-void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
-{
-    Measure(peer, heard);
-    const std::uint64_t missed = peer.Beats.Missed();
-    peer.Beats.Add(heard.Sequence);
-    if (peer.Beats.Missed() != missed)
-    {
-        change.Missed.push_back(peer.Node);
-    }
-    peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
-    peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
-    const bool hearsHereFirst = BeatExtensions::IsFirstHeardHere(heard.Beat, _ownTag);
-    change.State |= std::exchange(peer.HearsHereFirst, hearsHereFirst) != hearsHereFirst;
-    change.State |= TakeProblems(peer, heard);
-    if (const std::optional<std::uint32_t> told = BeatExtensions::FleetSumIn(heard.Beat))
-    {
-        const bool isNew = std::exchange(peer.FleetSum, told) != told;
-        change.State |= _isTool && isNew;
-    }
-    change.Beat = true;
-    if (heard.Arrival - peer.LastHeard <= peer.StaleAfter())
-    {
-        change.State |= SetState(peer, NodeState::UP, "") || change.NewLife;
-    }
-    CompareOffers(peer, heard, change);
-    TakeStates(peer, heard.Beat);
-}
-
-void PeerTable::Measure(Peer &peer, const HeardBeat &heard) const
-{
-    const Gateway::Beat &beat = heard.Beat;
-    const Duration source(beat.source_ns);
-    const Duration now = heard.Arrival;
-    peer.Place = PlaceIn(beat, peer.Place);
-    peer.Clock.OnBeat({.Source = source, .Wall = Duration(heard.Utc)}, now);
-    peer.DoubtsThisNode |= peer.Clock.StoodStillHere();
-    MeasureRoundTrip(peer, heard);
-    peer.LastBeatSource = source;
-    peer.LastBeatArrival = now;
-    // A beat that was held up on the way was sent earlier.
-    peer.LastHeard = std::min(now, peer.Clock.SentAt(source).value_or(now));
-    peer.Period =
-        std::clamp(Duration(std::chrono::milliseconds(beat.next_ms)), ShortestPeriod, LongestPeriod);
-}
-
-// An echo of a beat that this node has not sent is a mistake or a lie. How long the peer says to have held it
-// can only make its own clock look wrong.
-void PeerTable::MeasureRoundTrip(Peer &peer, const HeardBeat &heard) const
-{
-    const auto &echoes = NewsOf(heard.Beat).echoes;
-    const auto own =
-        std::find_if(echoes.begin(), echoes.end(), [this](const auto &echo) { return echo.node == _ownTag; });
-    const std::optional<Duration> sent = own == echoes.end() ? std::nullopt : _sent.Find(own->beat);
-    if (sent)
-    {
-        peer.Clock.OnRoundTrip(heard.Arrival - *sent - std::chrono::microseconds(own->held_us),
-                               heard.Arrival);
-    }
-}
-
-void PeerTable::TakeStates(Peer &peer, const Gateway::Beat &beat)
-{
-    if (peer.BeatsOffers != beat.offers)
-    {
-        peer.BeatsOffers = beat.offers;
-        peer.States.clear();
-    }
-    const auto &states = NewsOf(beat).states;
-    const std::size_t first = NewsOf(beat).first_state;
-    if (!states.empty())
-    {
-        peer.States.resize(std::max(peer.States.size(), first + states.size()), 0);
-        std::copy(states.begin(), states.end(), peer.States.begin() + static_cast<std::ptrdiff_t>(first));
-    }
-}
-
-void PeerTable::CompareOffers(Peer &peer, const HeardBeat &heard, Change &change)
-{
-    const Gateway::Beat &beat = heard.Beat;
-    if (peer.Offers && peer.OffersDigest == beat.offers)
-    {
-        _missing.LetGo(peer.Node);
-        return;
-    }
-    if (peer.State == NodeState::LOST || (_isAsked && !_isAsked(peer.Node)) ||
-        (peer.Offers && !change.NewLife && heard.Arrival - peer.OffersSince < OffersRest))
-    {
-        return;
-    }
-    _missing.Lacks(peer.Node, beat.offers, heard.Arrival);
-    const auto &parts = NewsOf(beat).parts;
-    const bool hasPart = !parts.empty() && !Whereabouts::IsIn(parts.front());
-    const auto whole = hasPart ? _missing.Add(peer.Node, parts.front()) : std::nullopt;
-    if (!whole)
-    {
-        return;
-    }
-    auto announcement = Announcements::Decode(*whole);
-    if (!announcement)
-    {
-        ++_malformed;
-        return;
-    }
-    peer.Offers = std::move(announcement);
-    peer.OffersSince = heard.Arrival;
-    peer.OffersDigest = beat.offers;
-    change.Offers = true;
-    _missing.LetGo(peer.Node);
-}
-
-bool PeerTable::Adopt(const Peer &elsewhere)
-{
-    const auto found = _peers.find(elsewhere.Node);
-    if (found == _peers.end() || !elsewhere.Offers || found->second.Incarnation != elsewhere.Incarnation ||
-        found->second.BeatsOffers != elsewhere.OffersDigest || found->second.HasPresentOffers())
-    {
-        return false;
-    }
-    Peer &peer = found->second;
-    peer.Offers = elsewhere.Offers;
-    peer.OffersDigest = elsewhere.OffersDigest;
-    peer.OffersSince = elsewhere.OffersSince;
-    _missing.LetGo(peer.Node);
-    return true;
 }
 
 PeerTable::Change PeerTable::OnGoodbye(const HeardBeat &heard)
@@ -495,50 +342,6 @@ void PeerTable::Expect(const Peer &peer)
         const Duration silence = staleIsNext ? peer.StaleAfter() : peer.LostAfter();
         _nextChange = std::min(_nextChange, peer.LastHeard + silence + after);
     }
-}
-
-bool PeerTable::IsEchoDue(const Peer &peer, Duration now) const
-{
-    return peer.State != NodeState::LOST && (!peer.LastEchoed || now - *peer.LastEchoed >= _echoPeriod);
-}
-
-bool PeerTable::IsEchoUrgent(const Peer &peer)
-{
-    return peer.State != NodeState::LOST && peer.DoubtsThisNode;
-}
-
-std::size_t PeerTable::EchoesDue(Duration now, std::size_t usual) const
-{
-    std::size_t urgent = 0;
-    std::size_t due = 0;
-    for (const auto &[name, peer] : _peers)
-    {
-        urgent += IsEchoUrgent(peer) ? 1 : 0;
-        due += !IsEchoUrgent(peer) && IsEchoDue(peer, now) ? 1 : 0;
-    }
-    return urgent + std::min(due, usual);
-}
-
-std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t usual, std::size_t most)
-{
-    std::vector<Gateway::BeatEcho> echoes;
-    const auto take = [&](Peer &peer)
-    {
-        Gateway::BeatEcho echo;
-        echo.node = peer.Tag;
-        echo.beat = static_cast<std::uint32_t>(peer.LastBeatSource.count());
-        echo.held_us = static_cast<std::uint32_t>(
-            std::chrono::duration_cast<std::chrono::microseconds>(now - peer.LastBeatArrival).count());
-        echoes.push_back(echo);
-        peer.LastEchoed = now;
-        peer.DoubtsThisNode = false;
-        return true;
-    };
-    TakeTurns(_peers, _lastReassured, most,
-              [&](const std::string &, Peer &peer) { return IsEchoUrgent(peer) && take(peer); });
-    TakeTurns(_peers, _lastEchoed, std::min(usual, most - echoes.size()),
-              [&](const std::string &, Peer &peer) { return IsEchoDue(peer, now) && take(peer); });
-    return echoes;
 }
 
 }  // namespace Rabit

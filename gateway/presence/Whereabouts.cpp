@@ -33,18 +33,18 @@ Gateway::AnnouncementPart Part()
     return part;
 }
 
-std::string In(const Gateway::Beat &beat)
+std::string In(const Gateway::Beat &beat, const std::string &known)
 {
     const auto &parts = NewsOf(beat).parts;
     if (parts.empty() || !IsIn(parts.front()))
     {
-        return "";
+        return known;
     }
     const auto &bytes = parts.front().bytes;
     const auto end = std::find(bytes.begin(), bytes.end(), 0);
     std::string text(bytes.begin(), end);
     text.resize(std::min(text.size(), Size));
-    return Printable(std::move(text));
+    return text.empty() ? known : Printable(std::move(text));
 }
 
 }  // namespace Rabit::Whereabouts

@@ -21,8 +21,8 @@ inline constexpr std::size_t Size = 64;
 std::string OfThisProcess();
 // OfThisProcess(), as a beat carries it in place of a part of the announcement.
 Gateway::AnnouncementPart Part();
-// The whereabouts in the beat, printable and no longer than Size; empty if there are none.
-std::string In(const Gateway::Beat &beat);
+// The whereabouts in the beat, printable and no longer than Size; `known` if there are none.
+std::string In(const Gateway::Beat &beat, const std::string &known = "");
 // True if the part carries whereabouts, and no part of an announcement.
 inline bool IsIn(const Gateway::AnnouncementPart &part)
 {

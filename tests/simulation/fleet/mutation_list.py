@@ -33,7 +33,7 @@ MUTATIONS = [
              FLEET),
     Mutation("a silent node is never LOST", "PeerTable.cpp", "silence > peer.LostAfter() && peer.State != NodeState::LOST",
              "false", FLEET),
-    Mutation("a beat that was held up counts as of now", "PeerTable.cpp",
+    Mutation("a beat that was held up counts as of now", "PeerTableBeats.cpp",
              "std::min(now, peer.Clock.SentAt(source).value_or(now))", "now", PARTS),
     Mutation("the clock of an earlier life is kept", "PeerTable.cpp", "peer.Clock = PeerClock();", "", FLEET),
     Mutation("a node that comes back with a lower number is never heard", "PeerTable.cpp",
@@ -43,7 +43,7 @@ MUTATIONS = [
     Mutation("nobody is asked for its announcement", "BeatContents.cpp", "wanted.offers = question.From;",
              "wanted.offers = BeatFormat::NotLacking;", NODES),
     Mutation("who asks is answered each time", "OffersAnswer.cpp", "const Duration gap = _gap.Next();", "const Duration gap = _gap.Interval();", PARTS),
-    Mutation("any echo is believed", "PeerTable.cpp", "_sent.Find(own->beat);", "std::optional(Duration(0));", PARTS),
+    Mutation("any echo is believed", "PeerTableBeats.cpp", "_sent.Find(own->beat);", "std::optional(Duration(0));", PARTS),
     Mutation("what is not as its digest says is taken", "OffersCollector.cpp",
              "if (Announcements::DigestOf(_parts.Bytes()) != digest)", "if (false)", PARTS),
     # The traffic on the air
