@@ -20,13 +20,20 @@ thread_local int left = -1;         // threads of Rabit's that may still start; 
 thread_local bool isProbe = false;  // the next thread tells how std::thread starts one
 StartRoutine routineOfStdThread = nullptr;
 
+// Stands for std::thread::_State, which is private from GCC 14 on: an object with virtual functions.
+class ThreadState
+{
+public:
+    virtual ~ThreadState();
+};
+
 bool IsOfRabit(StartRoutine routine, void *argument)
 {
     if (routine != routineOfStdThread)
     {
         return false;
     }
-    const auto *const state = static_cast<std::thread::_State *>(argument);
+    const auto *const state = static_cast<const ThreadState *>(argument);
     return std::string(typeid(*state).name()).find("Rabit") != std::string::npos;
 }
 
