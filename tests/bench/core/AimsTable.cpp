@@ -22,6 +22,20 @@ bool IsRealTime(const std::string &name)
     return name.find("/real_time") != std::string::npos || name.find("/manual_time") != std::string::npos;
 }
 
+// The member is called otherwise from version 1.8 of the library on.
+template <class Run>
+bool HasFailed(const Run &run)
+{
+    if constexpr (requires { run.error_occurred; })
+    {
+        return run.error_occurred;
+    }
+    else
+    {
+        return run.skipped != decltype(run.skipped){};
+    }
+}
+
 // Returns the name without the suffixes that the library adds.
 std::string BaseName(const std::string &name)
 {
@@ -44,7 +58,7 @@ void AimsTable::ReportRuns(const std::vector<Run> &runs)
     ConsoleReporter::ReportRuns(runs);
     for (const Run &run : runs)
     {
-        if (run.run_type != Run::RT_Iteration || run.error_occurred)
+        if (run.run_type != Run::RT_Iteration || HasFailed(run))
         {
             continue;
         }
