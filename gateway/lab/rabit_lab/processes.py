@@ -41,7 +41,7 @@ class Pauses:
         return self.seen
 
 
-def until(holds, limit_s=120):
+def until(holds, limit_s=300):
     """What `holds` returns once it is true. The limit only keeps a broken program from hanging its user."""
     end = time.monotonic() + limit_s
     while True:

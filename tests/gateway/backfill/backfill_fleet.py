@@ -12,7 +12,7 @@ import harness  # noqa: E402,F401
 
 MESSAGES = ["Sample", "Finding"]
 # Only keeps a broken program from hanging.
-LIMIT = 120
+LIMIT = 300
 
 
 class Fleet:

@@ -47,7 +47,7 @@ def one_network():
     return {"domain": next(DOMAINS), "transport": rabit.transports()[0], "interfaces": ["127.0.0.1"]}
 
 
-def wait_until(holds, seconds=30.0):
+def wait_until(holds, seconds=120.0):
     """Returns what `holds` returns once that is true."""
     end = time.monotonic() + seconds
     while not (result := holds()):

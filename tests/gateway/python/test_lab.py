@@ -28,7 +28,7 @@ def results(folder, test, *options):
     (folder / "conftest.py").write_text('pytest_plugins = ["rabit.lab"]\n')
     (folder / "test_flight.py").write_text(textwrap.dedent(test))
     done = subprocess.run([sys.executable, "-m", "pytest", "-rs", "-q", "-p", "no:cacheprovider", *options, folder],
-                          capture_output=True, text=True, timeout=300)
+                          capture_output=True, text=True, timeout=800)
     if "skipped" in done.stdout:
         pytest.skip(done.stdout)
     return done.returncode, done.stdout
@@ -45,8 +45,8 @@ def test_a_scenario_is_flown_and_its_recording_is_read(tmp_path):
             planner = {{"command": [sys.executable, "{tmp_path}/planner.py"]}}
             flight = lab.fly({{
                 "nodes": {{"uav1": uav, "planner": planner}},
-                "run": "9s",
-                "expect": ["all up within 8s", {{"exit codes": 0}}],
+                "run": "25s",
+                "expect": ["all up within 24s", {{"exit codes": 0}}],
             }})
             assert flight.passed and flight.verdict("all up").met
             assert "planner" in flight.log and flight.report.exists()
@@ -58,7 +58,7 @@ def test_a_scenario_is_flown_and_its_recording_is_read(tmp_path):
 
 
 def test_an_expectation_that_is_not_met_fails_the_test(tmp_path):
-    (tmp_path / "flight.yaml").write_text("nodes: {one: {command: [sleep, 2], plain: true}}\nrun: 3s\nexpect: []\n")
+    (tmp_path / "flight.yaml").write_text("nodes: {one: {command: [sleep, 1], plain: true}}\nrun: 10s\nexpect: []\n")
     code, said = results(tmp_path, """
         def test_flight(lab):
             assert not lab.fly("flight.yaml", check=False).passed

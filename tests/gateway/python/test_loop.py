@@ -41,9 +41,9 @@ class Interrupted:
 
     def next(self):
         if self._receipts:
-            self._queue.get(timeout=30)
+            self._queue.get(timeout=120)
             receipt = self._receipts.pop(0)
-            end = time.monotonic() + 30
+            end = time.monotonic() + 120
             while not receipt.done:
                 assert time.monotonic() < end, "no outcome"
                 time.sleep(0.001)
@@ -66,7 +66,7 @@ def test_an_outcome_that_becomes_known_while_others_are_taken_wakes_the_loop(idl
             assert not any(receipt.done for receipt in receipts)
             ground._outcomes._core = Interrupted(ground._core, queue, receipts)
             ground._outcomes._core.next()
-            assert set(await asyncio.wait_for(asyncio.gather(*tasks), 30)) == {rabit.Outcome.DELIVERED}
+            assert set(await asyncio.wait_for(asyncio.gather(*tasks), 120)) == {rabit.Outcome.DELIVERED}
 
     asyncio.run(main())
 
@@ -77,7 +77,7 @@ def test_hundreds_of_outcomes_are_awaited_at_once(idl, one_network):
             tasks = [asyncio.create_task(outcome_of(receipt)) for receipt in receipts]
             await asyncio.sleep(0)
             queue.on(lambda command: None)
-            assert set(await asyncio.wait_for(asyncio.gather(*tasks), 60)) == {rabit.Outcome.DELIVERED}
+            assert set(await asyncio.wait_for(asyncio.gather(*tasks), 240)) == {rabit.Outcome.DELIVERED}
 
     asyncio.run(main())
 
@@ -87,8 +87,8 @@ def test_one_outcome_is_awaited_twice(idl, one_network):
         async with pending_receipts(idl, one_network, 1) as (ground, queue, receipts):
             tasks = [asyncio.create_task(outcome_of(receipts[0])) for _ in range(2)]
             await asyncio.sleep(0)
-            queue.get(timeout=30)
-            assert await asyncio.wait_for(asyncio.gather(*tasks), 30) == [rabit.Outcome.DELIVERED] * 2
+            queue.get(timeout=120)
+            assert await asyncio.wait_for(asyncio.gather(*tasks), 120) == [rabit.Outcome.DELIVERED] * 2
 
     asyncio.run(main())
 
@@ -121,7 +121,7 @@ def test_a_stream_is_awaited_in_one_event_loop_after_the_other(idl, one_network)
             waiting = asyncio.ensure_future(anext(poses))
             await asyncio.sleep(0)
             node.post("Pose", idl.Uav.Pose(number=number))
-            return (await asyncio.wait_for(waiting, 30)).value.number
+            return (await asyncio.wait_for(waiting, 120)).value.number
 
         for number in range(1, 7):
             assert loops[number % 2].run_until_complete(next_of(number)) == number
@@ -135,7 +135,7 @@ def test_a_node_ends_while_all_threads_of_the_loop_wait_for_it(idl, one_network)
             loop = asyncio.get_running_loop()
             poses = node.subscribe("Pose", idl.Uav.Pose)
             waits = [loop.run_in_executor(None, poses.get) for _ in range(64)]
-        ended = await asyncio.wait_for(asyncio.gather(*waits, return_exceptions=True), 30)
+        ended = await asyncio.wait_for(asyncio.gather(*waits, return_exceptions=True), 120)
         assert all(isinstance(error, RuntimeError) for error in ended)
 
     asyncio.run(main())
@@ -168,7 +168,7 @@ def test_a_node_that_stops_ends_the_waits_of_an_event_loop(idl, one_network):
                  for stream in (node.subscribe("uav*/Pose", idl.Uav.Pose), node.queue("Commands"))]
         await asyncio.sleep(0.05)
         await asyncio.get_running_loop().run_in_executor(None, node.stop)
-        assert await asyncio.wait_for(asyncio.gather(*tasks), 30) == [[], []]
+        assert await asyncio.wait_for(asyncio.gather(*tasks), 120) == [[], []]
 
     asyncio.run(main())
 

@@ -80,7 +80,7 @@ def test_a_name_has_one_type(idl, one_network):
             node.subscribe("Pose", idl.Uav.Goto)
         poses = node.subscribe("Pose", idl.Uav.Pose)
         node.post("Pose", idl.Uav.Pose(number=1))
-        assert poses.get(timeout=5).value.number == 1
+        assert poses.get(timeout=120).value.number == 1
 
 
 def test_a_slow_reader_gets_the_newest_value(idl, one_network):
@@ -88,7 +88,7 @@ def test_a_slow_reader_gets_the_newest_value(idl, one_network):
         poses = node.subscribe("Pose", idl.Uav.Pose)
         for number in range(1, 101):
             node.post("Pose", idl.Uav.Pose(number=number))
-        assert poses.get(timeout=5).value.number == 100
+        assert poses.get(timeout=120).value.number == 100
         assert poses.latest()[""].value.number == 100
         with pytest.raises(TimeoutError):
             poses.get(timeout=0.05)
@@ -102,10 +102,10 @@ def test_a_slow_handler_gets_the_newest_value(idl, one_network):
         def handle(pose):
             seen.append(pose.value.number)
             begun.set()
-            assert may_end.wait(30)
+            assert may_end.wait(120)
 
         node.post("Pose", idl.Uav.Pose(number=1))
-        assert begun.wait(30)
+        assert begun.wait(120)
         for number in range(2, 101):
             node.post("Pose", idl.Uav.Pose(number=number))
         may_end.set()
@@ -123,13 +123,13 @@ def test_a_second_subscription_of_a_message_adds_its_nodes(idl, one_network):
     with uavs[0], uavs[1], rabit.Node("ground", **one_network) as ground:
         first = ground.subscribe("uav1/Pose", idl.Uav.Pose)
         uavs[0].post("Pose", idl.Uav.Pose(number=1))
-        assert first.get(timeout=30).value.number == 1
+        assert first.get(timeout=120).value.number == 1
         second = ground.subscribe("uav2/Pose", idl.Uav.Pose)
         uavs[1].post("Pose", idl.Uav.Pose(number=2))
-        assert second.get(timeout=30).value.number == 2
+        assert second.get(timeout=120).value.number == 2
         uavs[0].post("Pose", idl.Uav.Pose(number=3))
         # A State that was there comes once more when nodes are added.
-        wait_until(lambda: first.get(timeout=30).value.number == 3)
+        wait_until(lambda: first.get(timeout=120).value.number == 3)
 
 
 def test_a_command_that_nobody_takes_expires(idl, one_network):
@@ -139,7 +139,7 @@ def test_a_command_that_nobody_takes_expires(idl, one_network):
             wait_until(lambda: ground.send("uav1/MissionControl", idl.Uav.Goto(), expire=0.5).outcome
                        is not rabit.Outcome.REFUSED)
         receipt = ground.send("uav1/MissionControl", idl.Uav.Goto(), expire=0.5)
-        assert receipt.wait(30) in (rabit.Outcome.EXPIRED, rabit.Outcome.IN_DOUBT)
+        assert receipt.wait(120) in (rabit.Outcome.EXPIRED, rabit.Outcome.IN_DOUBT)
         with pytest.raises(ValueError, match="live equally long"):
             ground.send("uav1/MissionControl", idl.Uav.Goto(), expire=5)
         with pytest.raises(ValueError, match="expire"):
@@ -153,7 +153,7 @@ def test_a_message_to_all_has_an_outcome_for_each(idl, one_network):
         wait_until(lambda: all(ground.fleet().is_up(name) for name in ("uav1", "uav2")))
         receipt = wait_until(lambda: (lambda r: r if sum(r.counts.values()) == 2 else None)(
             ground.send("*/MissionControl", idl.Uav.Goto(id=1))))
-        assert receipt.wait(30) is rabit.Outcome.DELIVERED
+        assert receipt.wait(120) is rabit.Outcome.DELIVERED
         assert receipt.counts[rabit.Outcome.DELIVERED] == 2
         fleet = ground.fleet()
         assert sorted(fleet) == ["uav1", "uav2"] and fleet["uav1"].state.name == "UP" and len(fleet) == 2
@@ -213,29 +213,26 @@ def test_a_manager_runs_with_its_period_and_is_woken(idl, one_network, caplog):
 
 
 def test_beats_go_on_while_python_computes(idl, one_network):
-    """A regular expression that backtracks holds the GIL for seconds."""
+    """A regular expression that backtracks holds the GIL, and does so for years."""
     program = textwrap.dedent(f"""
         import re, sys, rabit
         node = rabit.Node("uav1", **{one_network!r})
         with node:
             print("up", flush=True)
             sys.stdin.readline()
-            import time
-            end = time.monotonic() + 6
-            while time.monotonic() < end:
-                re.match("(a*)*b", "a" * 22)  # about a second with the GIL
-            print("done", flush=True)
+            print("computes", flush=True)
+            re.match("(a*)*b", "a" * 100)
     """)
     with rabit.Node("ground", **one_network) as ground, run(program) as child:
         assert child.stdout.readline() == "up\n"
-        wait_until(lambda: ground.fleet().is_up("uav1"))
+        wait_until(lambda: ground.fleet().is_up("uav1"), 120)
         child.stdin.write("go\n")
         child.stdin.flush()
-        end = time.monotonic() + 5
-        while time.monotonic() < end:
-            assert ground.fleet().is_up("uav1")
-            time.sleep(0.05)
-        assert child.stdout.readline() == "done\n"
+        assert child.stdout.readline() == "computes\n"
+        time.sleep(6)  # without beats it is LOST by then, and stays so
+        wait_until(lambda: ground.fleet().is_up("uav1"))
+        assert child.poll() is None
+        child.kill()
 
 
 @pytest.mark.parametrize(
@@ -263,7 +260,7 @@ def test_ctrl_c_ends_a_program_that_waits(one_network, text):
         assert child.stdout.readline() == "ready\n"
         time.sleep(0.5)
         child.send_signal(signal.SIGINT)
-        _, errors = child.communicate(timeout=30)
+        _, errors = child.communicate(timeout=120)
         assert child.returncode == -signal.SIGINT and errors.strip().endswith("KeyboardInterrupt")
 
 
@@ -283,7 +280,7 @@ def test_a_signal_may_stop_the_node(one_network, number):
     with run(program(one_network, text)) as child:
         assert child.stdout.readline() == "ready\n"
         child.send_signal(number)
-        out, errors = child.communicate(timeout=60)
+        out, errors = child.communicate(timeout=240)
         assert (child.returncode, out, errors) == (0, "ended\n", "")
 
 
@@ -305,7 +302,7 @@ def test_a_signal_may_stop_the_node(one_network, number):
 )
 def test_the_interpreter_ends_with_nodes_that_run(one_network, text):
     with run(program(one_network, text)) as child:
-        _, errors = child.communicate(timeout=60)
+        _, errors = child.communicate(timeout=240)
         assert child.returncode == 0, errors
         assert "Traceback" not in errors
 
@@ -328,12 +325,12 @@ def test_a_forked_process_leaves_the_node_alone_and_starts_none(one_network):
                 print("child", flush=True)
             sys.exit(0)
         assert os.waitpid(child, 0)[1] == 0
-        assert node.is_running and node.flush(5)
+        assert node.is_running and node.flush(120)
         node.stop()
         print("parent", flush=True)
         """
     with run(program(one_network, text)) as child:
-        out, errors = child.communicate(timeout=60)
+        out, errors = child.communicate(timeout=240)
         assert (child.returncode, out) == (0, "child\nparent\n"), errors
 
 
@@ -344,13 +341,13 @@ def test_a_process_that_was_forked_without_nodes_may_have_its_own(one_network):
         child = os.fork()
         with rabit.Node("other", **network) as own:
             own.post("Pose", idl.Uav.Pose())
-            assert own.flush(10)
+            assert own.flush(120)
         print("child" if child == 0 else "parent", flush=True)
         if child:
             assert os.waitpid(child, 0)[1] == 0
         """
     with run(program(one_network, text)) as child:
-        out, errors = child.communicate(timeout=60)
+        out, errors = child.communicate(timeout=240)
         assert (child.returncode, sorted(out.split())) == (0, ["child", "parent"]), errors
 
 
@@ -364,12 +361,12 @@ def test_a_process_that_was_forked_after_a_start_that_failed_may_have_its_own_no
         child = os.fork()
         if child == 0:
             with rabit.Node("other", **network) as own:
-                assert own.flush(10)
+                assert own.flush(120)
             sys.exit(0)
         assert os.waitpid(child, 0)[1] == 0
         """
     with run(program(one_network, text)) as child:
-        out, errors = child.communicate(timeout=60)
+        out, errors = child.communicate(timeout=240)
         assert (child.returncode, out) == (0, "failed\n"), errors
 
 
@@ -384,7 +381,7 @@ def test_a_node_that_is_started_again_after_a_wrong_configuration_records_once(i
     file.write_text("<CycloneDDS/>")
     with node:
         node.post("Pose", idl.Uav.Pose(number=1))
-        assert node.flush(30)
+        assert node.flush(120)
     recordings = list((tmp_path / "flights").glob("*.mcap"))
     assert len(recordings) == 1
     assert [message.value.number for message in rabit.open(*recordings).messages("planner/Pose")] == [1]
@@ -403,7 +400,7 @@ def test_iterations_end_when_the_node_stops(idl, one_network):
     time.sleep(0.2)
     node.stop()
     for thread in threads:
-        thread.join(10)
+        thread.join(120)
     assert ended == [[], []]
 
 
@@ -414,6 +411,6 @@ def test_a_cancelled_wait_leaves_the_loop_in_order(idl, one_network):
             with pytest.raises(asyncio.TimeoutError):
                 await asyncio.wait_for(anext(poses), 0.05)
             node.post("Pose", idl.Uav.Pose(number=3))
-            assert (await asyncio.wait_for(anext(poses), 5)).value.number == 3
+            assert (await asyncio.wait_for(anext(poses), 120)).value.number == 3
 
     asyncio.run(main())

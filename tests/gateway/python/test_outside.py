@@ -80,12 +80,12 @@ def test_a_topic_of_ros_is_read_and_written(network, tmp_path):
         env={**os.environ, "CYCLONEDDS_URI": LOOPBACK}, stdout=subprocess.PIPE, text=True)
     try:
         with rabit.Node("bridge", foreign=foreign, **network) as node:
-            first = node.subscribe("Chatter", string).get(timeout=60)
-            numbers = [int(node.queue("All").get(timeout=60).value.data.split()[-1]) for _ in range(5)]
+            first = node.subscribe("Chatter", string).get(timeout=240)
+            numbers = [int(node.queue("All").get(timeout=240).value.data.split()[-1]) for _ in range(5)]
             assert numbers == list(range(numbers[0], numbers[0] + 5)) and first.value.data
             written = iter(range(100000))
             os.set_blocking(plain.stdout.fileno(), False)
-            wait_until(lambda: (node.post("Words", string(data=f"word {next(written)}")), plain.stdout.readline())[1], 60)
+            wait_until(lambda: (node.post("Words", string(data=f"word {next(written)}")), plain.stdout.readline())[1], 240)
     finally:
         plain.terminate()
-        plain.wait(30)
+        plain.wait(120)

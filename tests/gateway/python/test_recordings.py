@@ -20,13 +20,25 @@ def flight(tmp_path_factory, idl):
         poses = uav2.subscribe("uav1/Pose", idl.Uav.Pose)
         for number in range(1, 11):
             uav1.post("Pose", idl.Uav.Pose(altitude_m=100 + number, number=number))
-            assert poses.get(timeout=30).value.number == number
-            # A recorder looks for new names ten times a second.
-            time.sleep(0.15 if number == 1 else 0.01)
+            assert poses.get(timeout=120).value.number == number
+            if number == 1:  # the recorders find the message in their own time
+                wait_until(lambda: all(any(found(folder, node, "uav1/Pose")) for node in ("uav1", "uav2")))
         wait_until(lambda: uav2.send("uav1/MissionControl", idl.Uav.Goto(id=7)).outcome is not rabit.Outcome.REFUSED)
-        uav1.queue("MissionControl").get(timeout=30)
-        time.sleep(1.5)
+        uav1.queue("MissionControl").get(timeout=120)
+        wait_until(lambda: any(map(knows_the_other_clock, found(folder, "uav2", "uav2/Recorder/Clocks"))))
     return folder
+
+
+def found(folder, node, topic):
+    """The messages of that topic in the file of the node, as far as they are on the disk."""
+    try:
+        return list(rabit.open(next(folder.glob(f"{node}*.mcap"))).messages(topic))
+    except (StopIteration, RuntimeError, KeyError):  # no file, or no beginning of one, or no such topic
+        return []
+
+
+def knows_the_other_clock(clocks):
+    return any(peer["uncertain_by_ns"] is not None for peer in clocks.value["peers"])
 
 
 def test_a_recording_gives_decoded_values(flight, idl):

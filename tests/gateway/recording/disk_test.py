@@ -18,7 +18,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integratio
 import harness  # noqa: E402
 
 # Only keeps a broken program from hanging.
-LIMIT = 120
+LIMIT = 300
 STALL_S = 30
 MIB = 1 << 20
 IN_MOUNTS = "RABIT_TEST_IN_MOUNTS"

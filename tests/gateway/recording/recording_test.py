@@ -16,7 +16,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integratio
 import harness  # noqa: E402
 
 # Only keeps a broken program from hanging.
-LIMIT = 120
+LIMIT = 300
 
 
 def run(*argv):

@@ -17,7 +17,7 @@ import harness  # noqa: E402
 from two_aircraft import aircraft_config, is_well  # noqa: E402
 
 # Only keeps a broken program from hanging.
-LIMIT = 120
+LIMIT = 300
 
 
 class Fleet:
@@ -51,7 +51,7 @@ def a_tool_with_keys_sees_and_sends(fleet):
     keys = fleet.tool("fleet")
 
     def both():
-        done = fleet.run("nodes", "--keys", keys, "--json", "--wait", "10")
+        done = fleet.run("nodes", "--keys", keys, "--json", "--wait", "60")
         rows = {row["node"]: row["state"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
         return is_well(done) and rows == {"uav1": "UP", "uav2": "UP"}
     harness.until(both)
@@ -62,18 +62,18 @@ def a_tool_with_keys_sees_and_sends(fleet):
     for node in ("uav1", "uav2"):
         # On a busy machine a handshake may take longer than --wait, so the command is repeated, as a person would.
         def echoed(node=node):
-            done = fleet.run("echo", f"{node}/Pose", "--keys", keys, "--once", "--json", "--wait", "10")
+            done = fleet.run("echo", f"{node}/Pose", "--keys", keys, "--once", "--json", "--wait", "60")
             return done.returncode == 0 and "latitude_deg" in json.loads(done.stdout)["value"]
         harness.until(echoed)
 
         def delivered(node=node):
             done = fleet.run("send", f"{node}/MissionControl", "Uav::GoHome", '{"reason": "test"}', "--keys", keys,
-                             "--wait", "10")
+                             "--wait", "60")
             return done.returncode == 0 and done.stdout == "delivered\n"
         harness.until(delivered)
 
     def listed():
-        done = fleet.run("messages", "--keys", keys, "--wait", "10")
+        done = fleet.run("messages", "--keys", keys, "--wait", "60")
         return done.returncode == 0 and "Pose" in done.stdout
     harness.until(listed)
 
@@ -84,7 +84,7 @@ def a_configuration_names_keys_as_well(fleet):
     config.write_text(f"domain: {fleet.domain}\ntransport: {fleet.transport}\nsecurity: {{keys: {keys}}}\n")
 
     def echoed():
-        done = fleet.run("echo", "uav1/Pose", "--config", config, "--once", "--wait", "10")
+        done = fleet.run("echo", "uav1/Pose", "--config", config, "--once", "--wait", "60")
         return done.returncode == 0 and "latitude_deg" in done.stdout
     harness.until(echoed)
 
