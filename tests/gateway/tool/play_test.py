@@ -100,6 +100,7 @@ def values(echo, count):
 
 
 def the_recorded_values_come_again_in_their_order_and_time(setup):
+    began = time.monotonic()
     with harness.Processes() as processes:
         echo = setup.echo(processes, "replay.sensor/Reading")
         told, done = setup.play("--to", "3.5")
@@ -108,9 +109,11 @@ def the_recorded_values_come_again_in_their_order_and_time(setup):
         came = values(echo, told["messages"])
     assert [row["value"]["number"] for row in came] == list(range(1, told["messages"] + 1)), came
     assert {row["node"] for row in came} == {"replay.sensor"}, came
-    assert all(0 <= row["age_s"] < 0.9 for row in came), came
+    # Of the replay, not of the recording.
+    assert all(0 <= row["age_s"] < time.monotonic() - began for row in came), came
     seconds = came[-1]["posted_gps_s"] - came[0]["posted_gps_s"]
-    assert 0.5 < seconds / (told["messages"] - 1) < 1.5, came
+    # A busy machine may post the last one late, and the first one.
+    assert 0.5 < seconds / (told["messages"] - 1) and seconds < time.monotonic() - began, came
 
 
 def as_fast_as_it_goes_none_is_left_out(setup):
@@ -124,13 +127,17 @@ def as_fast_as_it_goes_none_is_left_out(setup):
 
 
 def from_a_moment_on_what_was_posted_before_is_there_as_old_as_it_was(setup):
+    known = json.loads(subprocess.run([setup.rabit, "knew", "--json", str(setup.file), "sensor", "sensor/Reading", "--at", "2.6"],
+                                      capture_output=True, text=True, timeout=LIMIT, check=True).stdout)
+    posted = 2.6 - known["age_s"]
+    began = time.monotonic()
     with harness.Processes() as processes:
         echo = setup.echo(processes, "replay.sensor/Reading")
-        told, done = setup.play("--from", "2.6", "--to", "2.7")
+        told, done = setup.play("--from", f"{posted + 0.4:.3f}", "--to", f"{posted + 0.5:.3f}")
         assert done.returncode == 0 and told["restored"] == 1 and told["messages"] == 0, (told, done)
         came = values(echo, 1)
-    assert came[0]["value"]["number"] in (2, 3), came
-    assert 0.3 < came[0]["age_s"] < 2, came
+    assert came[0]["value"]["number"] == known["value"]["number"], (known, came)
+    assert 0.39 < came[0]["age_s"] < 0.5 + time.monotonic() - began, came
 
 
 def it_is_a_node_that_says_that_it_replays(setup):

@@ -17,8 +17,10 @@ export async function openBrowser(options = {}) {
     viewport: {width: 1280, height: 800},
     args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking',
       '--disable-component-update', '--disable-sync'],
+    timeout: 180_000,
     ...options,
   });
+  context.setDefaultTimeout(180_000);  // of each action: only keeps a broken test from hanging
   return context;
 }
 

@@ -39,7 +39,7 @@ export async function endAll() {
 
 // Polls until the value is true, for so long that it never will be otherwise. Returns the value.
 export async function becomes(value, what) {
-  const end = Date.now() + 60_000;
+  const end = Date.now() + 180_000;
   for (;;) {
     const now = await value();
     if (now) return now;

@@ -58,7 +58,7 @@ def messages_are_listed_with_their_types_and_who_publishes_and_reads_them(rabit)
 
 
 def how_often_all_messages_come_is_measured_together(rabit):
-    listed, done = rabit.objects("messages", "--for", "3", "--wait", "10")
+    listed, done = rabit.objects("messages", "--for", "3", "--wait", "60")
     rates = {row["message"]: row["rate_hz"] for row in listed}
     assert done.returncode == 0 and 2 < rates["Pose"] < 200, done
     table = rabit.run("messages", "--for", "1")
@@ -80,7 +80,7 @@ def a_name_that_is_wrong_is_answered_with_the_nearest(rabit):
                             (("type", "Goto"), "did you mean `Uav::Goto`?"),
                             (("echo", "uav1/Poze"), "did you mean `Pose`?"),
                             (("echo", "uaw1/Pose"), "did you mean `uav1`?")):
-        done = rabit.run_until_heard(*arguments)
+        done = rabit.run_until_heard(*arguments, reason=hint)
         assert done.returncode == 1 and hint in done.stderr and done.stdout == "", done
 
 
@@ -112,7 +112,7 @@ def whoever_asks_again_and_again_is_answered(rabit):
         return set(re.findall(r"^uav\d", rabit.run("nodes").stdout, re.MULTILINE)) == {"uav1", "uav2"}
     harness.until(both)
     for number in range(1, 13):
-        done = rabit.run("nodes")
+        done = rabit.run("nodes", "--wait", "30")
         assert is_well(done), (number, done)
 
 
@@ -122,7 +122,7 @@ def the_problems_of_the_nodes_are_told_each_time(rabit):
         return [node for node in ("uav1", "uav2") if not re.search(rf"^! node {node}: subscribe Targets", done.stdout, re.M)]
     harness.until(lambda: not missing(rabit.run("nodes")))
     for number in range(1, 7):
-        done = rabit.run("nodes")
+        done = rabit.run("nodes", "--wait", "30")
         assert done.returncode == 1 and not missing(done), (number, done)
 
 

@@ -29,12 +29,17 @@ def the_own_problems_of_a_node_are_listed_and_diagnosed(rabit):
             done = rabit.run("nodes", "--wait", "4")
             return done.returncode == 1 and f"! node uav7: {PROBLEM}" in done.stdout
         harness.until(listed)
-        rows, _ = rabit.objects("nodes", "--wait", "4")
-        problems = [row for row in rows if "problem" in row and row["node"] == "uav7"]
-        assert any(keys(row) == ["problem", "node", "reason"] and row["problem"] == "node uav7" and
-                   row["reason"].startswith(PROBLEM) for row in problems), problems
-        done = rabit.run("doctor", "--wait", "4")
-        assert done.returncode == 1 and f"! node uav7: {PROBLEM}" in done.stdout, done
+
+        def in_objects():
+            rows, _ = rabit.objects("nodes", "--wait", "4")
+            return [row for row in rows if "problem" in row and row["node"] == "uav7" and row["reason"].startswith(PROBLEM)]
+        problems = harness.until(in_objects)
+        assert any(keys(row) == ["problem", "node", "reason"] and row["problem"] == "node uav7" for row in problems), problems
+
+        def diagnosed():
+            done = rabit.run("doctor", "--wait", "4")
+            return done.returncode == 1 and f"! node uav7: {PROBLEM}" in done.stdout
+        harness.until(diagnosed)
 
 
 def the_last_lines_of_a_log_are_shown_with_the_node_running_on(rabit):
@@ -53,11 +58,13 @@ def the_last_lines_of_a_log_are_shown_with_the_node_running_on(rabit):
 
 
 def a_log_is_followed_while_it_is_written(rabit):
-    with troubled(rabit) as uav, harness.Processes() as processes:
-        follower = processes.start(rabit.argv("log", "uav7", "-f", "-n", "0", "--wait", "30"))
-        follower.wait_for(re.compile(r".* warning gateway: subscribe Pse.*: uav1 does not publish `Pse`.*").fullmatch, 60)
-        assert uav.terminate() == 0
-        follower.wait_for(re.compile(r"rabit: uav7 is LOST").fullmatch, 60)
+    with harness.Processes() as processes:
+        # It is there before the node, whose first lines may be earlier than it is heard.
+        follower = processes.start(rabit.argv("log", "uav7", "-f", "-n", "100", "--wait", str(LIMIT)))
+        with troubled(rabit) as uav:
+            follower.wait_for(re.compile(r".* warning gateway: subscribe Pse.*: uav1 does not publish `Pse`.*").fullmatch, LIMIT)
+            assert uav.terminate() == 0
+            follower.wait_for(re.compile(r"rabit: uav7 is LOST").fullmatch, LIMIT)
         assert follower.terminate() == 0
 
 
@@ -87,8 +94,11 @@ def the_channel_is_shown_by_node_and_class(rabit):
     assert lines[0].split() == ["NODE", "B/s", "BUDGET", "CAPACITY", "DISCOVERY", "PRESENCE", "COMMAND", "STATE",
                                 "TELEMETRY", "BULK"], lines
     assert lines[-1].startswith("in all"), lines
-    rows, _ = rabit.objects("top", "--once", "--wait", "4")
-    uav = next(row for row in rows if row["node"] == "uav1")
+
+    def measured():
+        rows, _ = rabit.objects("top", "--once", "--wait", "4")
+        return next((row for row in rows if row["node"] == "uav1" and row["telemetry"]), None)
+    uav = harness.until(measured)
     assert keys(uav) == ["node", "bytes_per_s", "budget_bytes_per_s", "capacity_bytes_per_s", "discovery", "presence",
                          "command", "state", "telemetry", "bulk"], json.dumps(uav)
     assert uav["telemetry"] > 0 and uav["budget_bytes_per_s"] is None, uav

@@ -31,7 +31,7 @@ def what_cannot_be_sent_is_told_with_the_nearest_right_word(rabit):
                               (("uav1/MissionContro", "Uav::GoHome", "{}"), "did you mean `MissionControl`?"),
                               (("uaw1/MissionControl", "Uav::GoHome", "{}"), "did you mean `uav1`?"),
                               (("uav1/MissionControl", "Uav::GoHome", "{"), "")):
-        done = rabit.run_until_heard("send", *arguments)
+        done = rabit.run_until_heard("send", *arguments, reason=reason)
         assert done.returncode == 1 and reason in done.stderr and done.stderr.count("\n") == 1, done
     assert rabit.run("send", "MissionControl", "Uav::GoHome", "{}").returncode == 2
 
@@ -54,8 +54,9 @@ def the_result_of_a_post_is_an_object_for_scripts(rabit):
 
 
 def a_post_of_another_type_than_the_readers_want_is_told(rabit):
-    done = rabit.run("post", "uav7/Pose", "Uav::Goto", "{}", "--wait", "4", "--for", "0.5")
-    assert done.returncode == 1 and "subscribers of `Pose` want `Uav::Pose`, not `Uav::Goto`" in done.stderr, done
+    reason = "subscribers of `Pose` want `Uav::Pose`, not `Uav::Goto`"
+    done = rabit.run_until_heard("post", "uav7/Pose", "Uav::Goto", "{}", "--for", "0.5", reason=reason)
+    assert done.returncode == 1 and reason in done.stderr, done
 
 
 def what_cannot_be_posted_is_told(rabit):

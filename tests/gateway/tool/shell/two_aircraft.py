@@ -34,11 +34,12 @@ class Rabit:
         return subprocess.run(self.argv(command, *arguments), input=text, capture_output=True, text=True,
                               timeout=LIMIT, check=False)
 
-    def run_until_heard(self, command, *arguments):
-        """Lets the program wait for 4 s, and for longer if it has heard nobody by then (3): a machine may be busy. For
-        what the program looks for in vain: it waits for all of the time, since that may still come."""
+    def run_until_heard(self, command, *arguments, reason=""):
+        """Lets the program wait for 4 s, and for longer if it has heard nobody by then (3), or does not give the reason: a
+        machine may be busy. For what the program looks for in vain: it waits for all of the time, since that may still
+        come."""
         done = self.run(command, *arguments, "--wait", "4")
-        return self.run(command, *arguments, "--wait", "30") if done.returncode == 3 else done
+        return self.run(command, *arguments, "--wait", "60") if done.returncode == 3 or reason not in done.stderr else done
 
     def objects(self, command, *arguments):
         done = self.run(command, "--json", *arguments)
