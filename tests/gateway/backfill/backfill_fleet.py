@@ -55,14 +55,15 @@ class Fleet:
                                "ground", *MESSAGES], capture_output=True, text=True, check=True)
         return [json.loads(line) for line in done.stdout.splitlines()]
 
-    def wait_until_whole(self, nodes, seconds):
-        """Until nothing is missing in the recording of the ground station. Returns how long it took, and the figures."""
+    def wait_until_whole(self, nodes, seconds, posts=0):
+        """Until so many samples were posted and nothing is missing in the recording of the ground station. Returns how long it
+        took, and the figures."""
         begin = time.monotonic()
         while True:
             figures = [row for node in nodes for row in self.judge(node)]
             missing = sum(row["missing"] for row in figures)
             took = time.monotonic() - begin
-            if missing == 0:
+            if missing == 0 and all(row["posted"] >= posts for row in figures if row["message"] == "Sample"):
                 return took, figures
             if took > seconds:
                 raise AssertionError(f"after {seconds} s still missing: {figures}")

@@ -155,7 +155,18 @@ def with_another_lease(datagram, number, at, _, order):
 
 
 class Unconfirmed(Case):
-    """The same. What was announced falsely could be used, and must not last all the same: both sides begin anew."""
+    """The same. What was announced falsely could be used, and must not last all the same: both sides begin anew. Each
+    announcement is false until alpha listens and a handshake begins: on a busy machine the first one may be lost."""
+
+    listens = begun = False
+
+    def change(self, node, datagram):
+        out = bytearray(datagram)
+        self.listens |= node == "alpha" and any(each.writer == between.ANNOUNCEMENT for each in between.submessages(out))
+        if not self.begun and self.spoil(self, node, out):
+            self.spoiled += 1
+        self.begun |= self.listens and self.spoiled > 0 and is_of_handshake(out)
+        return [out]
 
     def meet(self, nodes):
         super().meet(nodes)
