@@ -1,12 +1,11 @@
 #include "guard/RtpsGuard.h"
 
-#include <rabit/base/Fnv1a.h>
-
 #include <algorithm>
 
 #include "common/RtpsReader.h"
 #include "common/RtpsWriter.h"
 #include "guard/DiscoveryCheck.h"
+#include "guard/PlainCheck.h"
 #include "guard/ProtectionCheck.h"
 #include "guard/TokenCheck.h"
 
@@ -15,84 +14,6 @@ namespace Rabit::Rtps
 
 namespace
 {
-
-// Submessages that Cyclone DDS sends unprotected even where all else is protected: its liveliness, and the
-// state of those builtin writers whose samples go by a protected counterpart (0xff...) then.
-bool IsOfIdleWriter(const Submessage &submessage, const Delivery &delivery)
-{
-    constexpr std::int64_t Most = 65536;  // one in some seconds: days
-    const bool is = submessage.Kind == SubmessageKind::Heartbeat ||
-                    submessage.Kind == SubmessageKind::AckNack ||
-                    (submessage.Kind == SubmessageKind::Data && delivery.Writer == LivelinessWriter);
-    return is && IsKnownBuiltin(delivery.Writer) && delivery.First <= Most && delivery.Last <= Most;
-}
-
-// The writers with which Cyclone DDS would exchange descriptions of types. It sends their state unprotected,
-// too; no node uses them.
-bool IsOfTypes(EntityId writer)
-{
-    constexpr EntityId TypeRequestsWriter = 0x000300c3;
-    constexpr EntityId TypeRepliesWriter = 0x000301c3;
-    return writer == TypeRequestsWriter || writer == TypeRepliesWriter;
-}
-
-// Submessages that nodes with keys accept unprotected.
-bool IsHeardInPlain(const Submessage &submessage, const Delivery &delivery)
-{
-    return delivery.Writer == HandshakeWriter || delivery.Writer == ParticipantWriter ||
-           IsOfIdleWriter(submessage, delivery);
-}
-
-// True if a sample that ends something ends the sender itself, or an endpoint of its own.
-bool EndsItsOwn(const Delivery &delivery, const GuidPrefix &sender)
-{
-    return (delivery.KeyHash.empty() || IsKeyOf(delivery.Writer, sender, delivery.KeyHash)) &&
-           (!delivery.HasKeyPayload || CheckKey(delivery.Writer, sender, delivery.Payload));
-}
-
-// True if a submessage of a builtin writer is sound and of its sender, and no byte of it need be blanked.
-bool IsSoundUnchanged(const Submessage &submessage, Delivery delivery, const GuidPrefix &sender)
-{
-    if (submessage.Kind != SubmessageKind::Data)
-    {
-        return submessage.Kind != SubmessageKind::DataFrag;
-    }
-    const auto payload = delivery.Payload;
-    if (delivery.Writer == HandshakeWriter)
-    {
-        return delivery.Alive && IsGenericMessage(payload);
-    }
-    std::vector<std::uint8_t> copy(payload.begin(), payload.end());
-    delivery.Payload = copy;
-    return EndsItsOwn(delivery, sender) &&
-           (delivery.HasKeyPayload || copy.empty() ||
-            CheckDiscovery(delivery.Writer, sender, copy, true).has_value()) &&
-           std::equal(copy.begin(), copy.end(), payload.begin());
-}
-
-// An honest sender repeats a discovery submessage unchanged until it is answered. Only the count changes and,
-// in a heartbeat, how far it has come.
-PeerVoice::Saying SayingOf(SubmessageKind kind, const Delivery &delivery)
-{
-    Fnv1a about;
-    about.AddNumber(static_cast<std::uint64_t>(kind));
-    about.AddNumber(delivery.Writer);
-    Fnv1a content;
-    content.AddNumber(static_cast<std::uint64_t>(delivery.First));
-    if (kind != SubmessageKind::Heartbeat)
-    {
-        content.AddNumber(static_cast<std::uint64_t>(delivery.Last));
-        content.AddNumber(delivery.LastFragment);
-    }
-    if (kind == SubmessageKind::Data || kind == SubmessageKind::Gap)
-    {
-        about.AddNumber(static_cast<std::uint64_t>(delivery.First));
-        content.AddNumber(delivery.Alive ? 1 : 0);
-        content.Add(delivery.KeyHash);
-        content.Add(delivery.Payload);
-    }
-    return {about.Sum(), content.Sum()};
-}
 
 bool HasSize(const Submessage &submessage, std::size_t size)
 {
@@ -105,11 +26,6 @@ std::uint64_t StampOf(const Submessage &submessage)
     RtpsReader body = submessage.Reader();
     const std::uint64_t seconds = body.U32();
     return seconds << 32 | body.U32();
-}
-
-void WriteSampleNumber(const Submessage &submessage, std::int64_t number)
-{
-    WriteSequence(submessage.Body().subspan(NumberInData), number, submessage.LittleEndian);
 }
 
 // Cuts a gap to WidestGap numbers. The reader then requests the next ones, and gets another gap for these.
@@ -455,100 +371,6 @@ bool RtpsGuard::IsReplayed(const Delivery &delivery, const Passage &passage) con
     return _observer != nullptr && passage.Whence == Origin::Network &&
            (delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter) &&
            _observer->IsReplayed(passage.Sender);
-}
-
-bool RtpsGuard::IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
-{
-    const bool announces = delivery.Writer == ParticipantWriter && delivery.Alive;  // it tells addresses
-    return announces || submessage.Kind == SubmessageKind::DataFrag ||  // it is checked when whole
-           _peers.SpeaksFrom(passage.Sender, passage.From) ||
-           _peers.Believes(passage.Sender, passage.From, SayingOf(submessage.Kind, delivery));
-}
-
-RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delivery &delivery,
-                                      const Passage &passage)
-{
-    // The vendor does not use data that comes before the announcement of the participant, or of the writer:
-    // no reader would accept it.
-    if (!_peers.Hears(passage.Sender, passage.Now))
-    {
-        if (_observer != nullptr && passage.Whence == Origin::Network && passage.Sender != _own)
-        {
-            _observer->HeardUnknown(passage.Sender);
-        }
-        return Verdict::Ignore;
-    }
-    switch (submessage.Kind)
-    {
-        case SubmessageKind::Data:
-        case SubmessageKind::DataFrag:
-        case SubmessageKind::Heartbeat:
-            if (!_peers.HasWriter(passage.Sender, delivery.Writer))
-            {
-                return Verdict::Ignore;
-            }
-            if (!_peers.Reaches(passage.Sender, delivery.Writer, std::max(delivery.First - 1, delivery.Last),
-                                passage.Now))
-            {
-                return Verdict::Refuse;
-            }
-            if (submessage.Kind != SubmessageKind::Heartbeat && !IsBuiltin(delivery.Writer))
-            {
-                ReplaceNumber(submessage, delivery, passage);
-            }
-            break;
-        case SubmessageKind::Gap:
-            if (!_peers.HasWriter(passage.Sender, delivery.Writer))
-            {
-                return Verdict::Ignore;
-            }
-            if (!_peers.CanKnowOf(passage.Sender, delivery.Writer, delivery.Last))
-            {
-                return Verdict::Refuse;
-            }
-            break;
-        case SubmessageKind::NackFrag:
-            if (_requests == Requests::Checked &&
-                !_sent.Has(delivery.Writer, delivery.First, delivery.LastFragment))
-            {
-                return Verdict::Refuse;
-            }
-            break;
-        default:
-            break;
-    }
-    if (submessage.Kind == SubmessageKind::Data && delivery.Writer == ParticipantWriter)
-    {
-        ReplaceAnnouncement(submessage, delivery, passage.Sender);
-    }
-    if (submessage.Kind == SubmessageKind::Heartbeat)
-    {
-        ReplaceCount(submessage, delivery, passage.Sender);
-    }
-    return Verdict::Pass;
-}
-
-void RtpsGuard::ReplaceNumber(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
-{
-    const std::int64_t ours =
-        _peers.NumberOf(passage.Sender, delivery.Writer, delivery.First, passage.Stamp, passage.Now);
-    if (ours != delivery.First)
-    {
-        WriteSampleNumber(submessage, ours);
-    }
-}
-
-void RtpsGuard::ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
-                                    const GuidPrefix &sender)
-{
-    WriteSampleNumber(submessage, _peers.AnnouncementOf(sender, delivery.First));
-}
-
-void RtpsGuard::ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender)
-{
-    const auto bytes = submessage.Body().subspan(delivery.CountAt, 4);
-    const std::uint32_t theirs = RtpsReader(bytes, submessage.LittleEndian).U32();
-    Write(bytes, _peers.CountOf(sender, delivery.Writer, theirs), submessage.LittleEndian);
 }
 
 bool RtpsGuard::IsKnownAt(const GuidPrefix &peer, const HostAddress &from)
