@@ -248,19 +248,14 @@ std::size_t AirTraffic::BeatBytes(Duration now) const
 void AirTraffic::LookAt(std::size_t publisher, Duration now)
 {
     TopicPublisher &of = _publishers[publisher];
+    bool isDue = false;
     if (_mirrored != Mirrored::Nothing)
     {
         of.Fetch();
+        isDue = of.DueAt(now) <= now && (_mirrored == Mirrored::All || MayCopy(of, now));
     }
-    if (_mirrored != Mirrored::Nothing && of.DueAt(now) <= now &&
-        (_mirrored == Mirrored::All || MayCopy(of, now)))
-    {
-        _schedule.Ready(_publisherStreams[publisher], of.NextBytes(_cost));
-    }
-    else
-    {
-        _schedule.NotReady(_publisherStreams[publisher]);
-    }
+    isDue ? _schedule.Ready(_publisherStreams[publisher], of.NextBytes(_cost))
+          : _schedule.NotReady(_publisherStreams[publisher]);
 }
 
 // Of values that go by another path, too. They go while KeptShare of a budget is free, since copies of queue
