@@ -12,7 +12,7 @@
 namespace Rabit
 {
 
-// What the checks of all sections share. Each check throws ConfigError with the line that it is given; a
+// The base of the checks of each section. Each function throws ConfigError with the line that it is given; a
 // `key` is named in the error.
 class ConfigCheck
 {

@@ -38,14 +38,24 @@ struct Pair
     }
 };
 
-TEST(PublishSubscribe, AFetchAfterAPostBringsItsContents)
+// A message whose override copies all, one that copies nothing of the base, and one that returns false for
+// its own type.
+template <typename Message>
+class AnyOverride : public testing::Test
 {
-    Pair<NumberMessage> pair;
+};
+using Overrides = testing::Types<NumberMessage, ForgetfulMessage, DenyingMessage>;
+TYPED_TEST_SUITE(AnyOverride, Overrides);
+
+TYPED_TEST(AnyOverride, AFetchAfterAPostBringsItsContentsOnce)
+{
+    Pair<TypeParam> pair;
     pair.Poster->Number = 7;
     pair.Poster->PostMessage();
     EXPECT_TRUE(pair.Reader->FetchMessage());
     EXPECT_EQ(pair.Reader->Number, 7);
     EXPECT_TRUE(pair.Reader->CompareTime(pair.Poster.get()));
+    EXPECT_FALSE(pair.Reader->FetchMessage());
 }
 
 TEST(PublishSubscribe, SetTimeNowStampsByTheClockOfTheWorkspace)
@@ -53,14 +63,6 @@ TEST(PublishSubscribe, SetTimeNowStampsByTheClockOfTheWorkspace)
     Pair<NumberMessage> pair;
     pair.Poster->SetTimeNow();
     EXPECT_EQ(pair.Poster->GetTimeStamp(), 1000.0);
-}
-
-TEST(PublishSubscribe, ASecondFetchOfOnePostIsFalse)
-{
-    Pair<NumberMessage> pair;
-    pair.Poster->PostMessage();
-    pair.Reader->FetchMessage();
-    EXPECT_FALSE(pair.Reader->FetchMessage());
 }
 
 TEST(PublishSubscribe, OfTwoPostersOfOneNameTheLastCountsAndTheOtherFetchesIt)
@@ -250,17 +252,6 @@ TEST(PublishSubscribe, AnOverrideThatUsesCopyBaseDoesNotMakeTheGlobalCopyOwnItse
     EXPECT_TRUE(global.expired());
 }
 
-TEST(PublishSubscribe, AnOverrideThatCopiesNothingOfTheBaseIsFetchedOnce)
-{
-    Pair<ForgetfulMessage> pair;
-    pair.Poster->Number = 9;
-    pair.Poster->PostMessage();
-    EXPECT_TRUE(pair.Reader->FetchMessage());
-    EXPECT_EQ(pair.Reader->Number, 9);
-    EXPECT_TRUE(pair.Reader->CompareTime(pair.Poster.get()));
-    EXPECT_FALSE(pair.Reader->FetchMessage());
-}
-
 TEST(PublishSubscribe, ForceFetchCopiesInAnyCase)
 {
     Pair<NumberMessage> pair;
@@ -373,15 +364,6 @@ TEST(PublishSubscribe, AMessageOfAnotherTypeOfTheSameClassIsNotPosted)
     EXPECT_THROW(global.PostMessage(&other), std::invalid_argument);
     EXPECT_EQ(global.GetNumberOfPosts(), 0u);
     EXPECT_FALSE(global.FetchMessage(&other));
-}
-
-TEST(PublishSubscribe, AnOverrideThatReturnsFalseForItsOwnTypeHasCopied)
-{
-    Pair<DenyingMessage> pair;
-    pair.Poster->Number = 3;
-    pair.Poster->PostMessage();
-    EXPECT_TRUE(pair.Reader->FetchMessage());
-    EXPECT_EQ(pair.Reader->Number, 3);
 }
 
 TEST(PublishSubscribe, AnUnregisteredMessageThrows)
