@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "Codec.h"
@@ -23,8 +24,11 @@ py::object ValueOf(const MessageClass &type, const RabitMessage &message);
 py::object ValueOfBytes(const MessageClass &type, std::span<const std::uint8_t> bytes);
 
 // The sample of a value. Throws py::type_error or py::value_error: `Uav::Goto.altitude_m: expected a number,
-// not 'high'`.
+// not 'high'`. `path` is the beginning of that, if it is not the name of the type.
 std::vector<std::uint8_t> Encode(const Codec &codec, py::handle value);
+std::vector<std::uint8_t> Encode(const Codec &codec, py::handle value, const std::string &path);
+// The sample of a member that is not given.
+std::vector<std::uint8_t> EncodeDefault(const Codec::Field &field);
 // A message with the contents of a value, of the class that its type has in this process.
 std::shared_ptr<RabitMessage> MessageOf(const MessageClass &type, py::handle value);
 // Makes a message one of that sample.
