@@ -61,7 +61,6 @@ public:
 
     // AirBudget::SetLimits
     void SetLimits(std::optional<double> budget, std::optional<double> pace, Duration now);
-    void SetUnlimited() { SetLimits({}, {}, Duration(0)); }
     void SetBudget(double bytesPerSecond, Duration now) { SetLimits(bytesPerSecond, {}, now); }
     void SetPace(double bytesPerSecond, Duration now) { SetLimits({}, bytesPerSecond, now); }
     void Reserve(double bytesPerSecond);

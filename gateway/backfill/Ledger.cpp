@@ -134,17 +134,15 @@ std::optional<Ledger::Gap> Ledger::NewestGap(const std::string &node, const std:
     return std::nullopt;
 }
 
-Ledger::Count Ledger::Counted() const
+std::size_t Ledger::Stamps() const
 {
     const std::lock_guard lock(_mutex);
-    Count count;
-    count.Series = _tracks.size();
+    std::size_t stamps = 0;
     for (const auto &[series, track] : _tracks)
     {
-        count.Stamps += track.Had.size();
-        count.Ranges += track.Whole.Size();
+        stamps += track.Had.size();
     }
-    return count;
+    return stamps;
 }
 
 }  // namespace Rabit::Backfill

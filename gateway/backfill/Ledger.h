@@ -49,13 +49,8 @@ public:
     // Returns the newest gap of that message; empty: none. The gap that IsNewest is left out if `!andNewest`.
     std::optional<Gap> NewestGap(const std::string &node, const std::string &message, bool andNewest) const;
 
-    struct Count
-    {
-        std::size_t Series = 0;
-        std::size_t Stamps = 0;
-        std::size_t Ranges = 0;
-    };
-    Count Counted() const;
+    // Number of stamps kept, of all series.
+    std::size_t Stamps() const;
 
 private:
     struct Track

@@ -58,12 +58,6 @@ std::vector<Mail::Letter> Mail::Take()
     return std::exchange(_letters, {});
 }
 
-std::uint64_t Mail::Dropped() const
-{
-    const std::lock_guard lock(_mutex);
-    return _dropped;
-}
-
 std::uint64_t Mail::Incarnation() const
 {
     const std::lock_guard lock(_mutex);
@@ -126,10 +120,6 @@ void Mail::Received(const QueueMessage &message)
     if (_letters.size() < MostLetters && (letter.Asked || letter.Answered))
     {
         _letters.push_back(std::move(letter));
-    }
-    else
-    {
-        ++_dropped;
     }
 }
 

@@ -46,10 +46,9 @@ public:
         std::optional<Question> Asked;  // one of both
         std::optional<Answer> Answered;
     };
-    // Letters that came since the last call. Take the messages out of the queue with them.
+    // Letters that came since the last call. Take the messages out of the queue with them. Those that do not
+    // decode, and those beyond a bound, are dropped: a question without an answer is asked again.
     std::vector<Letter> Take();
-    // Messages that do not decode, and those beyond a bound.
-    std::uint64_t Dropped() const;
 
     // Set these before the gateway starts. Called on any thread.
     std::function<void(const MirroredSample &)> OnMirrored;
@@ -57,8 +56,9 @@ public:
 
     // The present incarnation of this node; 0: not known yet.
     std::uint64_t Incarnation() const;
-    // The difference to add to the source time of that incarnation of a node to get the monotonic time here. Of
-    // an incarnation that was never heard, that of another one: wall clocks go on. Empty: neither is known.
+    // The difference to add to the source time of that incarnation of a node to get the monotonic time here.
+    // Of an incarnation that was never heard, that of another one: wall clocks go on. Empty: neither is
+    // known.
     std::optional<std::chrono::nanoseconds> SourceToLocal(const std::string &node,
                                                           std::uint64_t incarnation) const;
 
@@ -81,7 +81,6 @@ private:
     const std::shared_ptr<GatewayTap> _other;  // may be null
     mutable std::mutex _mutex;
     std::vector<Letter> _letters;
-    std::uint64_t _dropped = 0;
     std::uint64_t _incarnation = 0;
     std::map<std::pair<std::string, std::uint64_t>, std::chrono::nanoseconds> _clocks;
 };

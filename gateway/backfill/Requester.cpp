@@ -291,10 +291,4 @@ std::map<std::pair<std::string, std::string>, std::string> Requester::Refusals()
     return refusals;
 }
 
-bool Requester::IsBusy() const
-{
-    return std::any_of(_nodes.begin(), _nodes.end(),
-                       [](const auto &entry) { return OpenQuestion(entry.second) != nullptr; });
-}
-
 }  // namespace Rabit::Backfill

@@ -81,8 +81,6 @@ public:
     std::uint64_t Malformed() const { return _malformed; }
     // Nodes that do not answer for that message, and why, by node and message.
     std::map<std::pair<std::string, std::string>, std::string> Refusals() const;
-    // True if some question waits for its answer.
-    bool IsBusy() const;
 
 private:
     struct Asked

@@ -128,7 +128,6 @@ public:
     // Sends exactly one beat, whose body takes at most `most` bytes, but at least those of an empty beat.
     // Contents that do not fit follow in the next beats. Returns the bytes of its body; 0 before Open.
     std::size_t SendBeat(Duration now, std::size_t most = BeatFormat::Largest);
-    static constexpr std::size_t LargestBeat = BeatFormat::Largest;
     // Shortest beat period of a tool: nobody waits to learn that it has gone.
     static constexpr Duration ToolPeriod = std::chrono::seconds(2);
     // A tool that lacks something asks once in ToolGap, ToolQuestions times.

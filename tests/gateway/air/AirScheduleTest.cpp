@@ -560,7 +560,7 @@ TEST_F(PromiseTest, DoesNotStarveWhatNeedsMoreThanItsPeriod)
 
 TEST_F(PromiseTest, HoldsWithoutALimitOnlyOnceThereIsOne)
 {
-    Schedule.SetUnlimited();
+    Schedule.SetLimits({}, {}, 0ns);
     const StreamId bulk = Add(TrafficClass::Bulk, 1000);
     Schedule.Promise(Beat, 150, 1s);
     EXPECT_EQ(Schedule.Next(2s), bulk);

@@ -17,7 +17,7 @@ TEST(LedgerTest, APostIsTakenOnce)
     EXPECT_TRUE(ledger.Take({"uav1", "Pose", 8}, 5)) << "another incarnation";
     ledger.SetWhole(Pose, {0, 10});
     EXPECT_FALSE(ledger.Take(Pose, 7)) << "a late live value of a range that is whole";
-    EXPECT_EQ(ledger.Counted().Stamps, 1U) << "a whole range needs no stamps";
+    EXPECT_EQ(ledger.Stamps(), 1U) << "a whole range needs no stamps";
 }
 
 TEST(LedgerTest, NothingIsMissingBeforeTheOriginWasAsked)
@@ -83,7 +83,7 @@ TEST(LedgerTest, StampsAreBounded)
     {
         EXPECT_TRUE(ledger.Take(Pose, stamp));
     }
-    EXPECT_EQ(ledger.Counted().Stamps, Ledger::MostStamps);
+    EXPECT_EQ(ledger.Stamps(), Ledger::MostStamps);
 }
 
 }  // namespace

@@ -100,15 +100,7 @@ void AirNode::ApplyRate(Time now)
         return;
     }
     _rateAt = now + RateEvery;
-    const auto rate = _estimate.Rate(now);
-    if (rate)
-    {
-        _schedule.SetPace(*rate, now);
-    }
-    else
-    {
-        _schedule.SetUnlimited();
-    }
+    _schedule.SetLimits({}, _estimate.Rate(now), now);
 }
 
 void AirNode::Run(Time now, AirMedium &medium)
