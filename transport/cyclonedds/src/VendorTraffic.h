@@ -65,6 +65,7 @@ extern "C"
        result to RabitCycloneUnwatch after the domain was deleted. */
     void *RabitCycloneWatch(struct RabitCycloneCalls calls);
     void RabitCycloneUnwatch(void *watch);
+    struct ddsi_domaingv *RabitCycloneDomainOf(const void *watch);
 
     /* Sends a datagram of ours that way or, as `to` says, from the same socket to the group of samples; `may`
        is not called. Valid until the domain is deleted. */
