@@ -12,7 +12,7 @@ sys.path.insert(0, str(HERE.parent / "integration"))
 import harness  # noqa: E402
 
 # Only keeps a broken test from hanging.
-LIMIT_S = 120
+LIMIT_S = 300
 # The exit code of `rabit lab run` where it is not allowed.
 LAB_IMPOSSIBLE = 3
 

@@ -16,7 +16,7 @@ sys.path.insert(0, str(HERE.parent / "integration"))
 import harness  # noqa: E402
 
 # Only keeps a broken test from hanging.
-LIMIT_S = 60
+LIMIT_S = 300
 
 CONFIG = """
 node: uav1
@@ -91,7 +91,7 @@ class Row:
         self.wait(node, f"queue Chatter {first + 20}", since)
         values = [int(text.split()[2]) for at, text in node.lines if at >= when and text.startswith("queue Chatter")]
         assert values[:21] == list(range(first, first + 21)), values[:21]
-        self.wait(node, r"message Latched \d+ 0\.?\S*", since)
+        self.wait(node, r"message Latched \d+ \d\d?(\.\S*)?", since)  # its age since it arrived, on a busy machine as well
         self.wait(node, r"message Autopilot/Setpoint \d+ .*", since)
         self.wait(plain, r"got rt/fmu/in/trajectory_setpoint \d+ -5", since)
         self.wait(plain, r"got rt/words \d+", since)

@@ -33,13 +33,14 @@ def fly(uav, transport, px4, rabit, domain, folder):
         aircraft = processes.start([uav, "--config", config, "--px4", "dds",
                                     "--transport", transport, "--domain", domain])
         plain = processes.start([px4, domain], {"CYCLONEDDS_URI": CYCLONE})
-        poses = processes.start([rabit, "echo", "uav1/Pose", "--field", "latitude_deg", *network])
+        poses = processes.start([rabit, "echo", "uav1/Pose", "--field", "latitude_deg", "--wait", LIMIT_S, *network])
         poses.wait_for(lambda text: text.startswith("47.3977"), LIMIT_S)
 
         def command(altitude_m):
-            processes.start([rabit, "send", "uav1/MissionControl", "Uav::Goto", goto(altitude_m), *network])
+            processes.start([rabit, "send", "uav1/MissionControl", "Uav::Goto", goto(altitude_m), "--wait", LIMIT_S,
+                             *network])
 
-        modes = processes.start([rabit, "echo", "uav1/FlightMode", "--json", *network])
+        modes = processes.start([rabit, "echo", "uav1/FlightMode", "--json", "--wait", LIMIT_S, *network])
         modes.wait_for(lambda text: '"not_ready":"PX4 is not armed"' in text, LIMIT_S)
         plain.tell("arm")
         modes.wait_for(lambda text: '"not_ready":""' in text, LIMIT_S)

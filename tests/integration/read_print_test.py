@@ -16,7 +16,7 @@ import threading
 import unittest
 
 PROGRAM = None
-PATIENCE_SEC = 60
+PATIENCE_SEC = 300
 
 
 class Session:

@@ -32,7 +32,7 @@ def main():
     for capability in CAPABILITIES:
         for test in tests:
             done = subprocess.run(["setpriv", f"--bounding-set=-{capability}", sys.executable, *map(str, test)],
-                                  capture_output=True, text=True, timeout=60, check=False)
+                                  capture_output=True, text=True, timeout=300, check=False)
             is_good = done.returncode == SKIPPED and done.stdout.startswith("skipped: ") and not done.stderr
             failed += not is_good
             print(f"{'ok' if is_good else 'FAILED'}: {test[0].name} without {capability}: {done.stdout}{done.stderr}".rstrip())

@@ -33,7 +33,7 @@ BLOCK = re.compile(r"(?P<comments>(?:^<!-- [^\n]* -->\n)*)^```console\n(?P<text>
 COMMENT = re.compile(r"^<!-- (?P<what>[a-z ]+?)(?:: (?P<more>.*?))? -->$", re.MULTILINE)
 KNOWN = {"run", "setup", "background", "stop", "not run"}
 # Only keeps a broken test from hanging.
-LIMIT_S = 120
+LIMIT_S = 300
 
 
 def plain(line):

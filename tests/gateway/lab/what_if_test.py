@@ -13,7 +13,7 @@ import sys
 import tempfile
 
 import lab_test
-from lab_test import check
+from lab_test import TRIES, check
 
 # Of a network of the scenario, and the same for `rabit lab replay`.
 RADIOS = {
@@ -27,7 +27,6 @@ network:
   radio: RADIO
 run: 60s
 """
-TRIES = 3  # flights over one radio, while the notes say that the machine was disturbed
 AFTER = "15s"  # the nodes have met
 IN_REAL_TIME = "lossy"
 MESSAGES = ("Pose", "Health", "MissionState", "Findings")

@@ -14,7 +14,7 @@ import tempfile
 import termios
 import time
 
-LIMIT_S = 60
+LIMIT_S = 300
 CONFIG = """node: uav1
 domain: 7
 publish:
