@@ -28,6 +28,7 @@ subscribe:
 accept:
   - {{queue: Notes, types: [Ledger::Note], from: [ground]}}
 """
+BEAT_S = 0.5
 WARNINGS = re.compile("rabit: warning: (.*)")
 
 
@@ -35,7 +36,7 @@ class Node:
     """A running node, its ledger and what it said."""
 
     def __init__(self, case, name, transport, *options, env=None):
-        self.name, self.transport = name, transport
+        self.case, self.name, self.transport = case, name, transport
         self.ledger = case.folder / f"{len(case.started)}.ledger"
         self.ledger.touch()
         self.process = case.processes.start(
@@ -45,6 +46,13 @@ class Node:
 
     def lines(self):
         return [line.partition(" ")[2] for line in self.ledger.read_text(encoding="utf-8").split("\n")[:-1]]
+
+    def silences(self, other):
+        """The lines with which it shows the other one STALE, but for those that the machine explains: before them it may have
+        delayed beats by half a second and more."""
+        stale = re.compile(rf"(\d+) (peer node={other} state=STALE .*)")
+        found = filter(None, map(stale.fullmatch, self.ledger.read_text(encoding="utf-8").split("\n")))
+        return [line[2] for line in found if self.case.waits.between(int(line[1]) * 1e-9 - 3, int(line[1]) * 1e-9) < BEAT_S]
 
     def find(self, pattern):
         return [line for line in self.lines() if re.fullmatch(pattern, line)]
@@ -87,7 +95,8 @@ class Case:
 
     def run(self):
         try:
-            with tempfile.TemporaryDirectory() as folder, harness.Processes() as self.processes:
+            with tempfile.TemporaryDirectory() as folder, harness.Processes() as self.processes, \
+                    harness.Waits(self.processes.pids) as self.waits:
                 self.folder = pathlib.Path(folder)
                 if self.secured:
                     self.make_keys()
@@ -152,7 +161,9 @@ def goes_on(uav1, ground):
     for node, other in ((uav1, "ground"), (ground, "uav1")):
         delivered = f"delivered from={other} .*"
         node.wait_for(delivered, len(node.find(delivered)) + 10)
-        never(node, f"peer node={other} state=(STALE|LOST) .*", "problem .*live node.*")
+        never(node, f"peer node={other} state=LOST .*", "problem .*live node.*")
+        if node.silences(other):
+            raise AssertionError(f"{node.name} wrote {node.silences(other)[:5]}")
 
 
 NOTES = ["--to", "uav1", "--count", 1000000, "--rate", 50]
