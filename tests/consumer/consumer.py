@@ -13,6 +13,7 @@ import harness  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 300
+TRIES = 3  # of a flight, while the machine is busy
 # The exit code of `rabit lab run` where it is not allowed.
 LAB_IMPOSSIBLE = 3
 
@@ -25,6 +26,19 @@ def run(*argv, fails=False, **options):
         print(done.stdout)
         sys.exit(f"ended with {done.returncode}: {' '.join(str(a) for a in argv)}")
     return done.stdout
+
+
+def while_busy(work, *arguments):
+    """Calls work(...), and again if it fails while the machine is busy: flights have limits of time."""
+    for left in reversed(range(TRIES)):
+        idle = harness.Idle()
+        try:
+            work(*arguments)
+            return
+        except SystemExit as failure:
+            if left == 0 or not idle.is_busy():
+                raise
+            print(f"once more, since {100 * idle.share():.0f} % of the machine were idle: {failure}", flush=True)
 
 
 def build(cmake, name, folder, prefix):
@@ -40,12 +54,17 @@ def build(cmake, name, folder, prefix):
 def build_template(cmake, folder, prefix):
     """Builds the template against the package and runs the test that it comes with."""
     built = build(cmake, "project", folder, prefix)
-    run(pathlib.Path(cmake).parent / "ctest", "--test-dir", built, "--output-on-failure", "--no-tests=error")
+    while_busy(run, pathlib.Path(cmake).parent / "ctest", "--test-dir", built, "--output-on-failure", "--no-tests=error")
     print("ok: the template")
 
 
 def fly_template(folder, prefix):
     """Flies the built template in the lab of the package, by the scenario that comes with it."""
+    while_busy(fly_once, folder, prefix)
+
+
+def fly_once(folder, prefix):
+    shutil.rmtree(folder / "flight", ignore_errors=True)
     done = subprocess.run([prefix / "bin" / "rabit", "lab", "run", "scenario.yaml", "--to", folder / "flight"],
                           cwd=folder / "project", env=os.environ | {"PATH": f"{folder / 'project_build'}:{os.environ['PATH']}"},
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=LIMIT_S, check=False)
