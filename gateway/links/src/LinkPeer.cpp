@@ -231,8 +231,24 @@ void LinkPeer::OnData(const LinkFrame &frame, LinkTime now)
     LinkReceiver *receiver = ReceiverOf(frame.Data);
     if (receiver != nullptr)
     {
-        receiver->OnData(frame, _path.AckDelay(), now);
+        receiver->OnData(frame, AckDelay(now), now);
     }
+}
+
+// An acknowledgement of a dialogue almost always goes with the next message of this node. If each frame set a
+// time for it, each would cost a wake-up of the driver. So all that come within the longer delay share one
+// time, which the probe timer of the peer still covers.
+LinkTime LinkPeer::AckDelay(LinkTime now)
+{
+    const LinkTime plain = _context.Settings.AckDelay;
+    const LinkTime pause = now - std::exchange(_dataAt, now);
+    const bool isDialogue = _acksGoWithData && pause < plain;
+    if (!isDialogue || _path.Times().Smoothed() + 2 * plain >= _context.Settings.MinResend)
+    {
+        return _path.AckDelay();
+    }
+    _lookAt = now + 2 * plain;
+    return 2 * plain;
 }
 
 LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)

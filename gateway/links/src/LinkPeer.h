@@ -101,6 +101,8 @@ private:
     LinkReceiver *ReceiverOf(const LinkData &data);
     void OnData(const LinkFrame &frame, LinkTime now);
     void OnAcks(const LinkFrame &frame, LinkTime now);
+    // How long the acknowledgement of data that came now may wait.
+    LinkTime AckDelay(LinkTime now);
     void Measure(const LinkFrame &frame, LinkTime now);
     // Takes the token if it is newer than the known one. Returns true if it was.
     bool TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now);
@@ -161,6 +163,9 @@ private:
     // The receivers of the first acknowledgements of the frame that is being made; reused.
     std::vector<LinkReceiver *> _acknowledged;
     bool _droppedBeyondGaps = false;  // since the peer was heard
+    LinkTime _dataAt{0};              // when the last data came
+    bool _acksGoWithData = false;     // the last acknowledgement did
+    LinkTime _lookAt = LinkNever;     // when this is due next although nothing may be
 };
 
 }  // namespace Rabit

@@ -34,6 +34,7 @@ void LinkPeer::Advance(LinkTime now)
 {
     const bool wasSilent = _silent;
     _silent = IsSilentAt(now);
+    _lookAt = now < _lookAt ? _lookAt : LinkNever;
     if (IsUnheardAt(now) && !_droppedBeyondGaps)
     {
         for (const auto &[queue, receiver] : _receivers)
@@ -223,6 +224,7 @@ void LinkPeer::AddAcks(LinkFrame &frame, std::size_t most, bool one)
 
 void LinkPeer::AcksSent(const LinkFrame &frame)
 {
+    _acksGoWithData = frame.Acks.empty() ? _acksGoWithData : frame.HasData;
     for (std::size_t i = 0; i < frame.Acks.size(); ++i)
     {
         const LinkAck &ack = frame.Acks[i];
@@ -269,7 +271,7 @@ void LinkPeer::SendHello(LinkTime now)
 
 LinkTime LinkPeer::NextDue() const
 {
-    LinkTime due = UrgentDue();
+    LinkTime due = std::min(UrgentDue(), _lookAt);
     for (const LinkSender *sender : _byNumber)
     {
         due = std::min(due, sender->NextDue(IsOpen()));

@@ -748,6 +748,87 @@ TEST_F(LinkReceiverRules, R8_AnAcknowledgementGoesWithDataThatGoesAnyway)
     EXPECT_THAT(a.TakeAcks(), SizeIs(1)) << "that one";
 }
 
+// b says and a answers, a message each, in 100 us.
+class LinkReceiverDialogue : public LinkReceiverRules
+{
+protected:
+    LinkReceiverDialogue()
+    {
+        OpenSession();
+        Exchange();
+    }
+    void Exchange()
+    {
+        Hear();
+        a.Enqueue("mine");
+        ++_answers;
+        a.Pass(50us);
+        EXPECT_THAT(a.TakeAcks(), SizeIs(1));
+    }
+    void Hear()
+    {
+        a.Pass(50us);
+        StoredFrame data = Data(_next++, {"m"});
+        if (_answers > 0)
+        {
+            data.Fields.Acks = b.Ack(_answers).Fields.Acks;
+        }
+        a.Hear(data);
+    }
+
+private:
+    std::uint64_t _next = 2;
+    std::uint64_t _answers = 0;  // messages of a
+};
+
+TEST_F(LinkReceiverDialogue, R8_AMessageOfADialogueMakesNothingDueEarlier)
+{
+    Exchange();
+    const LinkTime due = a.Node->NextDue();
+    Hear();
+    EXPECT_GE(a.Node->NextDue(), due);
+}
+
+TEST_F(LinkReceiverDialogue, R8_TheLastMessageOfADialogueIsAcknowledgedInFourMilliseconds)
+{
+    Exchange();
+    Hear();
+    a.Live(3999us);
+    EXPECT_THAT(a.TakeAcks(), IsEmpty());
+    a.Live(1us);
+    EXPECT_THAT(a.TakeAcks(), SizeIs(1));
+}
+
+TEST_F(LinkReceiverDialogue, R8_NothingMoreIsDueWhenADialogueIsOver)
+{
+    Exchange();
+    Hear();
+    a.Live(10ms);
+    a.TakeAcks();
+    EXPECT_EQ(a.Node->NextDue(), LinkNever);
+}
+
+TEST_F(LinkReceiverDialogue, R8_ADialogueWithPausesIsAcknowledgedInTwoMilliseconds)
+{
+    Exchange();
+    a.Live(2ms);
+    Hear();
+    a.Live(2ms);
+    EXPECT_THAT(a.TakeAcks(), SizeIs(1));
+}
+
+TEST_F(LinkReceiverDialogue, R8_MessagesWithoutAnswersAreAcknowledgedInTwoMilliseconds)
+{
+    Hear();
+    a.Live(4ms);
+    a.TakeAcks();
+    Hear();
+    a.Live(1ms);
+    Hear();
+    a.Live(1ms);
+    EXPECT_THAT(a.TakeAcks(), SizeIs(1));
+}
+
 TEST_F(LinkReceiverRules, R8_AcknowledgesAtOnceAfterHalfOfAWindowInBytes)
 {
     OpenSession();
