@@ -14,7 +14,7 @@ namespace
 rtps::HistoryAttributes MakeHistoryAttributes()
 {
     constexpr int ReservedChanges = 8;
-    return {rtps::DYNAMIC_RESERVE_MEMORY_MODE, 0, ReservedChanges, 0};
+    return {rtps::DYNAMIC_REUSABLE_MEMORY_MODE, 0, ReservedChanges, 0};
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ rtps::HistoryAttributes MakeAttributes(int depth)
 {
     // Our own pool provides the buffers, so only the changes are reserved here.
     constexpr int MostReserved = 16;
-    return {rtps::DYNAMIC_RESERVE_MEMORY_MODE, 0, std::min(depth + 1, MostReserved), 0};
+    return {rtps::DYNAMIC_REUSABLE_MEMORY_MODE, 0, std::min(depth + 1, MostReserved), 0};
 }
 
 }  // namespace
