@@ -60,14 +60,6 @@ TEST_F(PayloadPoolTest, SamplesWhoseRestNeverComesDoNotFillTheMemory)
     EXPECT_TRUE(Get(MaxSample));
 }
 
-TEST_F(PayloadPoolTest, ASmallSampleDoesNotHoldTheBufferOfALargeOne)
-{
-    EXPECT_TRUE(Get(60'000));
-    GiveBack();
-    EXPECT_TRUE(Get(100));
-    EXPECT_LE(Changes.front().serializedPayload.max_size, 1024u);
-}
-
 TEST_F(PayloadPoolTest, WhatIsGivenBackCountsNoMore)
 {
     for (int i = 0; i < 100'000; ++i)

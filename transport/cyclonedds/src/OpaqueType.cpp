@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "EndpointSettings.h"
+#include "common/BufferPool.h"
 
 namespace Rabit::Cyclone
 {
@@ -29,6 +30,13 @@ struct OpaqueType
     std::function<bool(SampleBytes, KeyHash &)> KeyOf;
     std::shared_ptr<SessionLog> Log;
 };
+
+// Of the process and never destroyed, since a sample may outlive its type and its domain.
+BufferPool &Samples()
+{
+    static auto *const samples = new BufferPool;
+    return *samples;
+}
 
 OpaqueSample *Of(const ddsi_serdata *sample)
 {
@@ -179,7 +187,7 @@ bool UntypedToValue(const ddsi_sertype *, const ddsi_serdata *, void *, void **,
 
 void FreeSample(ddsi_serdata *sample)
 {
-    ::operator delete(Of(sample));
+    Samples().Release({reinterpret_cast<std::uint8_t *>(sample), Of(sample)->Capacity});
 }
 
 std::size_t Print(const ddsi_sertype *, const ddsi_serdata *, char *buffer, std::size_t size)
@@ -263,8 +271,10 @@ OpaqueSample *NewSample(const ddsi_sertype *type, ddsi_serdata_kind kind, std::s
     static_assert(sizeof(OpaqueSample) % 8 == 0 && std::is_trivially_destructible_v<OpaqueSample>);
     // The vendor reads up to the next multiple of 4 bytes.
     const std::size_t padding = (4 - size % 4) % 4;
-    auto *sample = new (::operator new(sizeof(OpaqueSample) + size + padding)) OpaqueSample;
+    const auto buffer = Samples().Acquire(static_cast<std::uint32_t>(sizeof(OpaqueSample) + size + padding));
+    auto *sample = new (buffer.Data) OpaqueSample;
     ddsi_serdata_init(&sample->Header, type, kind);
+    sample->Capacity = buffer.Capacity;
     sample->Size = size;
     std::fill_n(sample->Data() + size, padding, std::uint8_t{0});
     return sample;

@@ -26,6 +26,7 @@ struct OpaqueSample
 {
     ddsi_serdata Header;
     std::size_t Size = 0;
+    std::uint32_t Capacity = 0;  // of this memory
     KeyHash Key{};
     std::uint64_t Sequence = 0;  // of an arrived sample
 

@@ -10,11 +10,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <utility>
-#include <vector>
 
 #include "Vendor.h"
+#include "common/BufferPool.h"
 
 namespace Rabit::FastDds
 {
@@ -29,25 +28,19 @@ public:
     using Change = rtps::CacheChange_t;
     using Payload = rtps::SerializedPayload_t;
 
-    struct Buffer
-    {
-        std::uint8_t *Data = nullptr;  // aligned to 16
-        std::uint32_t Capacity = 0;
-    };
+    using Buffer = BufferPool::Buffer;
 
     // `onRefused` is called, on the vendor's thread, if an arriving sample is larger than MaxSample, or
     // exceeds MostArriving.
     explicit PayloadPool(std::function<void()> onRefused) : _onRefused(std::move(onRefused)) {}
-    ~PayloadPool() override;
 
     // Limit for all samples together whose fragments are still arriving: the first fragment declares the size
     // of its sample, and the others may never come.
     static constexpr std::size_t MostArriving = 2 * std::size_t{MaxSample};
 
-    // A buffer for at least `size` bytes, which the caller owns until it releases or adopts it. Throws
-    // std::bad_alloc.
-    Buffer Acquire(std::uint32_t size);
-    void Release(Buffer buffer);
+    // As those of BufferPool. The caller owns the buffer until it releases or adopts it.
+    Buffer Acquire(std::uint32_t size) { return _buffers.Acquire(size); }
+    void Release(Buffer buffer) { _buffers.Release(buffer); }
     // Makes the buffer the payload of a change that has none.
     void Adopt(Buffer buffer, std::uint32_t length, Change &change);
 
@@ -58,9 +51,7 @@ private:
     void Fill(Payload &payload, Buffer buffer, std::uint32_t length);
 
     const std::function<void()> _onRefused;
-    std::mutex _mutex;
-    std::vector<Buffer> _free;           // guarded by _mutex
-    std::size_t _kept = 0;               // bytes in them, too
+    BufferPool _buffers;
     std::atomic<std::size_t> _held = 0;  // bytes in changes
 };
 
