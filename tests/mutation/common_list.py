@@ -30,7 +30,15 @@ def resolver(name, find, replace):
     return Mutation(name, COMMON + "PeerResolver.cpp", find, replace, f"{PROGRAM}:PeerResolver.*")
 
 
+def buffers(name, find, replace, file="BufferPool.cpp"):
+    return Mutation(name, COMMON + file, find, replace, f"{PROGRAM}:BufferPoolTest.*")
+
+
 MUTATIONS = [
+    # Memory of samples
+    buffers("a small sample holds a large buffer", "SmallestBits = 7", "SmallestBits = 16", "BufferPool.h"),
+    buffers("all buffers are kept", "_kept + buffer.Capacity <= MostKept", "true"),
+    buffers("no buffer is kept", "_kept + buffer.Capacity <= MostKept", "false"),
     # When to join anew
     decision("a network is joined before it has lasted", "Since + SettleOf(network.Interface)", "Since"),
     decision("who comes and goes is trusted at once", "settle = std::min(2 * settle, _times.LongestSettle);", ""),

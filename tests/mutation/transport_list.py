@@ -286,7 +286,6 @@ MUTATIONS = [
     # Buffers
     history("samples that never come fill the memory", "PayloadPool.cpp", "|| _held + size > MostArriving", ""),
     history("what is given back still counts", "PayloadPool.cpp", "_held -= payload.max_size;", ""),
-    history("a small sample holds a large buffer", "PayloadPool.cpp", "&& _free[i].Capacity <= Loosest * capacity", ""),
     # Histories
     history("one sample too many is kept", "KeepLast.h", "found->second.Size() < _depth",
           "found->second.Size() <= _depth"),
