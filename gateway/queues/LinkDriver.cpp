@@ -259,15 +259,6 @@ LinkRefusal LinkDriver::Enqueue(const std::string &node, const std::string &queu
     News news;
     {
         const std::lock_guard lock(_mutex);
-        if (!_links->HasLinkTo(node, queue))
-        {
-            LinkOptions options = SendOptions(_config.Send, node, queue);
-            if (const SendRule *expiry = FindSendRule(_expiries, node, queue))
-            {
-                options.Expire = expiry->Expire;
-            }
-            _links->Configure(node, queue, options, Now());
-        }
         enqueued = _links->Enqueue(node, queue, type, payload, Now());
         if (enqueued.Accepted())
         {
@@ -300,6 +291,16 @@ void LinkDriver::Send(const LinkFrame &frame)
 bool LinkDriver::SendsAcksAlone(std::string_view destination) const
 {
     return _second.TakesAnswers && _second.TakesAnswers(destination);
+}
+
+LinkOptions LinkDriver::OptionsOf(std::string_view destination, std::string_view queue) const
+{
+    LinkOptions options = SendOptions(_config.Send, destination, queue);
+    if (const SendRule *expiry = FindSendRule(_expiries, destination, queue))
+    {
+        options.Expire = expiry->Expire;
+    }
+    return options;
 }
 
 void LinkDriver::OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,

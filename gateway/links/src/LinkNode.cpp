@@ -121,7 +121,7 @@ bool LinkNode::IsPossiblePeer(std::string_view name) const
 }
 
 LinkRefusal LinkNode::FindOrAddSender(std::string_view destination, std::string_view queue,
-                                      const LinkOptions &options, LinkTime now, LinkPeer *&peer,
+                                      const LinkOptions *options, LinkTime now, LinkPeer *&peer,
                                       LinkSender *&sender)
 {
     peer = FindPeer(destination);
@@ -143,14 +143,9 @@ LinkRefusal LinkNode::FindOrAddSender(std::string_view destination, std::string_
     {
         return LinkRefusal::TooManyLinks;
     }
-    sender = &peer->AddSender(queue, options);
+    sender = &peer->AddSender(queue,
+                              options != nullptr ? *options : _context->Output.OptionsOf(destination, queue));
     return LinkRefusal::None;
-}
-
-bool LinkNode::HasLinkTo(std::string_view destination, std::string_view queue) const
-{
-    const LinkPeer *peer = FindPeer(destination);
-    return peer != nullptr && peer->FindSender(queue) != nullptr;
 }
 
 LinkRefusal LinkNode::Configure(std::string_view destination, std::string_view queue,
@@ -159,7 +154,7 @@ LinkRefusal LinkNode::Configure(std::string_view destination, std::string_view q
     RequireValid(options);
     LinkPeer *peer = nullptr;
     LinkSender *sender = nullptr;
-    return FindOrAddSender(destination, queue, options, now, peer, sender);
+    return FindOrAddSender(destination, queue, &options, now, peer, sender);
 }
 
 LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
@@ -172,7 +167,7 @@ LinkEnqueued LinkNode::Enqueue(std::string_view destination, std::string_view qu
     }
     LinkPeer *peer = nullptr;
     LinkSender *sender = nullptr;
-    LinkRefusal refusal = FindOrAddSender(destination, queue, LinkOptions(), now, peer, sender);
+    LinkRefusal refusal = FindOrAddSender(destination, queue, nullptr, now, peer, sender);
     if (refusal != LinkRefusal::None)
     {
         ++(refusal == LinkRefusal::BadName ? _context->Counters.RefusedBadName

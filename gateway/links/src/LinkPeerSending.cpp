@@ -60,7 +60,7 @@ void LinkPeer::Run(LinkTime now)
     for (std::size_t idle = 0; IsOpen() && idle < _byNumber.size();)
     {
         LinkSender &sender = *_byNumber[_nextTurn++ % _byNumber.size()];
-        idle = sender.IsReady(now) && SendData(sender, _context.Settings.MaxDatagram, now) ? 0 : idle + 1;
+        idle = SendData(sender, _context.Settings.MaxDatagram, now) ? 0 : idle + 1;
     }
     while (SendUrgent(now))
     {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/gateway/links/LinkMessages.h>
+#include <rabit/gateway/links/LinkOptions.h>
 #include <rabit/gateway/links/LinkOutcome.h>
 #include <rabit/gateway/links/LinkPayload.h>
 
@@ -80,6 +81,11 @@ public:
     // True if acknowledgements for that node go in frames of their own, and not in those with messages: then
     // the driver may send them by another path as well.
     virtual bool SendsAcksAlone(std::string_view /*destination*/) const { return false; }
+    // The options of a link that is made on first use, without LinkNode::Configure. They must be in range.
+    virtual LinkOptions OptionsOf(std::string_view /*destination*/, std::string_view /*queue*/) const
+    {
+        return {};
+    }
     // The outcome of an accepted message is known.
     virtual void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                            LinkOutcome outcome) = 0;

@@ -77,11 +77,9 @@ public:
     LinkRefusal Configure(std::string_view destination, std::string_view queue, const LinkOptions &options,
                           LinkTime now);
 
-    // True if there is a link to that queue of that node; Configure no longer changes its options.
-    bool HasLinkTo(std::string_view destination, std::string_view queue) const;
-
     // Accepts a message for a queue of another node, or refuses it at once. The link is made on first use,
-    // with the options of Configure or else default ones. Rule S1. Call Run when LinkEnqueued::Due says.
+    // with the options of Configure or else those of LinkOutput::OptionsOf. Rule S1. Call Run when
+    // LinkEnqueued::Due says.
     LinkEnqueued Enqueue(std::string_view destination, std::string_view queue, std::string_view type,
                          LinkPayload payload, LinkTime now);
 
@@ -169,8 +167,9 @@ private:
     bool IsPossiblePeer(std::string_view name) const;
     LinkPeer *FindPeer(std::string_view name) const;
     LinkPeer *FindOrAddPeer(std::string_view name, LinkTime now);
+    // Without options a new link has those of LinkOutput::OptionsOf.
     LinkRefusal FindOrAddSender(std::string_view destination, std::string_view queue,
-                                const LinkOptions &options, LinkTime now, LinkPeer *&peer,
+                                const LinkOptions *options, LinkTime now, LinkPeer *&peer,
                                 LinkSender *&sender);
     bool Accepts(LinkFrame &frame, const LinkPeer *peer, LinkTime now);
     void OnUnknownShort(const LinkFrame &frame, LinkTime now);
