@@ -312,6 +312,12 @@ private:
         auto theirs = GoodbyeOf(peer, own, number);
         if (const Receiver receiver = LastReceiver(); receiver.Next != nullptr)
         {
+            // A vendor that waits for protected announcements heeds a goodbye only of participants of which
+            // it has had one. Otherwise it would remember a failed handshake for good.
+            if (auto announcement = _introductions.Take(peer); !announcement.empty())
+            {
+                HandOnAsProtected(receiver, peer, announcement);
+            }
             HandOnAsProtected(receiver, peer, theirs);
         }
     }
