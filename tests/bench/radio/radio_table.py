@@ -108,6 +108,10 @@ def main():
         for row in chosen:
             for contestant in ([PLAIN] if row.plain else []) + [RABIT]:
                 for transport in options.transports.split(","):
+                    by_hand = pathlib.Path(options.programs) / f"bench_raw_{transport}"
+                    if contestant == PLAIN and not by_hand.exists():
+                        print(f"{row.name}: {by_hand.name} is not built, and left out")
+                        continue
                     figures = run(row, options, contestant, transport)
                     wrong = missed(row, figures) if contestant == RABIT else []
                     results.append({"row": row.name, "measure": row.measure, "figures": figures, "missed": wrong,
