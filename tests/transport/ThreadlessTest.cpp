@@ -10,6 +10,19 @@
 #include <thread>
 #include <typeinfo>
 
+namespace ThreadsOfStd
+{
+
+// Stands for std::thread::_State, which is private from GCC 14 on: an object with virtual functions. Not in
+// the namespace without a name, where clang wants its functions to be defined.
+class ThreadState
+{
+public:
+    virtual ~ThreadState();
+};
+
+}  // namespace ThreadsOfStd
+
 namespace
 {
 
@@ -20,20 +33,13 @@ thread_local int left = -1;         // threads of Rabit's that may still start; 
 thread_local bool isProbe = false;  // the next thread tells how std::thread starts one
 StartRoutine routineOfStdThread = nullptr;
 
-// Stands for std::thread::_State, which is private from GCC 14 on: an object with virtual functions.
-class ThreadState
-{
-public:
-    virtual ~ThreadState();
-};
-
 bool IsOfRabit(StartRoutine routine, void *argument)
 {
     if (routine != routineOfStdThread)
     {
         return false;
     }
-    const auto *const state = static_cast<const ThreadState *>(argument);
+    const auto *const state = static_cast<const ThreadsOfStd::ThreadState *>(argument);
     return std::string(typeid(*state).name()).find("Rabit") != std::string::npos;
 }
 
