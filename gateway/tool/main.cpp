@@ -66,7 +66,7 @@ void TellOfEnvironment(const std::string &error, const std::vector<std::string> 
         const char *const value = std::getenv(variable);
         const bool isGiven =
             std::any_of(words.begin(), words.end(),
-                        [option = option](const std::string &word) { return word.starts_with(option); });
+                        [begin = option](const std::string &word) { return word.starts_with(begin); });
         if (value != nullptr && !isGiven && error.find(option) != std::string::npos)
         {
             Output::Talk(std::string(option) + " comes from the environment: " + variable + "=" + value);

@@ -322,7 +322,7 @@ void LinkNode::ServeRooms(LinkTime now)
             receiver->OnRoom(_waiting.size(), now);
         }
         std::stable_partition(_waiting.begin(), _waiting.end(),
-                              [&turn = turn](const auto &waiting) { return *waiting.first > turn.Last; });
+                              [&last = turn.Last](const auto &waiting) { return *waiting.first > last; });
         for (bool any = true; any;)
         {
             any = false;

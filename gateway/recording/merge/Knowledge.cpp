@@ -143,7 +143,7 @@ Knowledge::Knowledge(const Mcap::Contents &contents)
         const auto schema = contents.Schemas.find(channel.SchemaId);
         const auto life =
             std::find_if(Lives.begin(), Lives.end(),
-                         [&channel = channel](const KnowerLife &one) { return IsOf(channel, one); });
+                         [&given = channel](const KnowerLife &one) { return IsOf(given, one); });
         if ((kind != "knew" && kind != "mirrored" && kind != "posted") || node.empty() || life == Lives.end())
         {
             continue;

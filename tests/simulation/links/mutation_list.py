@@ -207,7 +207,7 @@ MUTATIONS = [
     Mutation("R7 room is not used", "LinkNode.cpp", "turn->second.RoomCame = true;", "", "direct"),
     Mutation("R7 the first by name has all room", "LinkReceiver.cpp", "ConsumeKept(now, true);", "ConsumeKept(now);",
              "direct"),
-    Mutation("R7 the turn begins with the first by name", "LinkNode.cpp", "*waiting.first > turn.Last", "false", "direct"),
+    Mutation("R7 the turn begins with the first by name", "LinkNode.cpp", "*waiting.first > last", "false", "direct"),
     Mutation("R7 what is being prepared is offered again", "LinkReceiverConsume.cpp",
              "if (part.Sequence == _givenOut && !_prepared)", "if (false)", "direct"),
     Mutation("R7 what was prepared is taken for any message", "LinkReceiver.cpp",
