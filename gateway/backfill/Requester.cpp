@@ -240,7 +240,14 @@ std::optional<std::pair<Series, Range>> Requester::TakePosts(const std::string &
     }
     if (asked.LooksAtNewest)
     {
-        posts->empty() ? static_cast<void>(wanted.Look.Next()) : wanted.Look.Reset();
+        if (posts->empty())
+        {
+            wanted.Look.Next();
+        }
+        else
+        {
+            wanted.Look.Reset();
+        }
         wanted.NextLook = now + wanted.Look.Interval();
     }
     const double share = std::min(

@@ -186,6 +186,10 @@ void Exploration::Subscribe(const SubscribeRule &rule)
 void Exploration::SetExpiry(const std::string &node, const std::string &queue,
                             std::chrono::milliseconds expire)
 {
+    if (expire < std::chrono::milliseconds(0) || expire > std::chrono::hours(24 * 365))
+    {
+        throw std::invalid_argument("SetExpiry: a message expires after 0 s to a year");
+    }
     const std::lock_guard lock(_mutex);
     _expiries.emplace_back(node, queue, expire);
     if (_links)

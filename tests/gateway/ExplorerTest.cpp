@@ -426,6 +426,13 @@ TEST_F(ExplorerTest, MessagesExpireAfterTheTimeThatWasSetForTheirQueue)
     EXPECT_TRUE(fleet.RunUntil([&] { return receipt->Outcome() != QueueOutcome::Pending; }, 30s));
 }
 
+TEST_F(ExplorerTest, AnExpiryOutOfRangeIsAMistakeOfTheCaller)
+{
+    FleetExplorer &explorer = AddTool();
+    EXPECT_THROW(explorer.SetExpiry("uav?", "MissionControl", -1ms), std::invalid_argument);
+    EXPECT_THROW(explorer.SetExpiry("uav?", "MissionControl", 24h * 366), std::invalid_argument);
+}
+
 TEST_F(ExplorerTest, ASubscriptionToATypeThatIsNotThereIsAMistakeOfTheCaller)
 {
     FleetExplorer &explorer = AddTool();

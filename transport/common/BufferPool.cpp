@@ -34,7 +34,6 @@ BufferPool::Buffer BufferPool::Acquire(std::uint32_t size)
     const std::size_t bits = std::max(needed, SmallestBits);
     if (bits > LargestBits)
     {
-        // Fast DDS keeps a list of missing fragments inside the buffer, rounded up to 4 bytes.
         const std::uint32_t capacity = (size + 15u) & ~15u;
         return {static_cast<std::uint8_t *>(::operator new(capacity, Alignment)), capacity};
     }

@@ -243,7 +243,9 @@ LinkTime LinkPeer::AckDelay(LinkTime now)
     const LinkTime plain = _context.Settings.AckDelay;
     const LinkTime pause = now - std::exchange(_dataAt, now);
     const bool isDialogue = _acksGoWithData && pause < plain;
-    if (!isDialogue || _path.Times().Smoothed() + 2 * plain >= _context.Settings.MinResend)
+    const RoundTrip &times = _path.Times();
+    const LinkTime answered = times.Smoothed() + 4 * times.Variation() + 2 * plain;
+    if (!isDialogue || !times.IsKnown() || answered >= _context.Settings.MinResend)
     {
         return _path.AckDelay();
     }

@@ -164,8 +164,8 @@ private:
     std::vector<LinkReceiver *> _acknowledged;
     bool _droppedBeyondGaps = false;  // since the peer was heard
     LinkTime _dataAt{0};              // when the last data came
-    bool _acksGoWithData = false;     // the last acknowledgement did
-    LinkTime _lookAt = LinkNever;     // when this is due next although nothing may be
+    bool _acksGoWithData = false;     // true if the last acknowledgement went with data
+    LinkTime _lookAt = LinkNever;     // this is due then, even if nothing is to be sent
 };
 
 }  // namespace Rabit

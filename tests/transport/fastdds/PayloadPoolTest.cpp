@@ -60,6 +60,27 @@ TEST_F(PayloadPoolTest, SamplesWhoseRestNeverComesDoNotFillTheMemory)
     EXPECT_TRUE(Get(MaxSample));
 }
 
+// The vendor's change beside each of them takes memory as well.
+TEST_F(PayloadPoolTest, SmallSamplesWhoseRestNeverComesDoNotFillTheMemory)
+{
+    const std::size_t most = PayloadPool::MostArriving / 512;
+    while (Changes.size() < 2 * most && Get(100))
+    {
+    }
+    EXPECT_EQ(Refused, 1);
+    EXPECT_LE(Changes.size(), most);
+}
+
+// The vendor notes the place of a missing fragment in the first four bytes of it, rounded up to four.
+TEST_F(PayloadPoolTest, ABufferHasRoomForTheVendorsListOfFragments)
+{
+    for (const std::uint32_t size : {127u, 128u, 256u, 65536u, 1u << 20})
+    {
+        ASSERT_TRUE(Get(size));
+        EXPECT_GE(Changes.back().serializedPayload.max_size, size + 4) << size;
+    }
+}
+
 TEST_F(PayloadPoolTest, WhatIsGivenBackCountsNoMore)
 {
     for (int i = 0; i < 100'000; ++i)

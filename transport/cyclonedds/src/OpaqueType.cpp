@@ -31,7 +31,7 @@ struct OpaqueType
     std::shared_ptr<SessionLog> Log;
 };
 
-// Of the process and never destroyed, since a sample may outlive its type and its domain.
+// The pool of the process. It is never destroyed, since a sample may outlive its type and its domain.
 BufferPool &Samples()
 {
     static auto *const samples = new BufferPool;

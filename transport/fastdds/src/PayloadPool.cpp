@@ -2,11 +2,24 @@
 
 #include <rabit/base/Assert.h>
 
+#include <algorithm>
 #include <cstring>
 #include <new>
 
 namespace Rabit::FastDds
 {
+
+namespace
+{
+
+// Bytes that a change takes with its buffer: the vendor's change beside it has some 250.
+std::size_t HeldBy(std::uint32_t capacity)
+{
+    constexpr std::uint32_t least = 512;
+    return std::max(capacity, least);
+}
+
+}  // namespace
 
 void PayloadPool::Adopt(Buffer buffer, std::uint32_t length, Change &change)
 {
@@ -16,7 +29,7 @@ void PayloadPool::Adopt(Buffer buffer, std::uint32_t length, Change &change)
 
 void PayloadPool::Fill(Payload &payload, Buffer buffer, std::uint32_t length)
 {
-    _held += buffer.Capacity;
+    _held += HeldBy(buffer.Capacity);
     payload.data = buffer.Data;
     payload.max_size = buffer.Capacity;
     payload.length = length;
@@ -32,7 +45,9 @@ bool PayloadPool::Take(std::uint32_t size, Payload &payload)
     }
     try
     {
-        Fill(payload, _buffers.Acquire(size), size);
+        // The vendor keeps a list of missing fragments inside the buffer, and rounds its places up to 4
+        // bytes.
+        Fill(payload, _buffers.Acquire(size + 4), size);
         return true;
     }
     catch (const std::bad_alloc &)
@@ -58,8 +73,8 @@ bool PayloadPool::TakeCopy(const Payload &data, Payload &payload)
 
 void PayloadPool::GiveBack(Payload &payload)
 {
-    RABIT_ASSERT(payload.max_size <= _held);
-    _held -= payload.max_size;
+    RABIT_ASSERT(HeldBy(payload.max_size) <= _held);
+    _held -= HeldBy(payload.max_size);
     _buffers.Release({payload.data, payload.max_size});
     payload.data = nullptr;
     payload.max_size = 0;

@@ -35,8 +35,8 @@ public:
     explicit PayloadPool(std::function<void()> onRefused) : _onRefused(std::move(onRefused)) {}
 
     // Limit for all samples together whose fragments are still arriving: the first fragment declares the size
-    // of its sample, and the others may never come.
-    static constexpr std::size_t MostArriving = 2 * std::size_t{MaxSample};
+    // of its sample, and the others may never come. Each of the two largest has room for the vendor's list.
+    static constexpr std::size_t MostArriving = 2 * (std::size_t{MaxSample} + 16);
 
     // As those of BufferPool. The caller owns the buffer until it releases or adopts it.
     Buffer Acquire(std::uint32_t size) { return _buffers.Acquire(size); }

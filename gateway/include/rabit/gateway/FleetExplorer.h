@@ -116,7 +116,7 @@ public:
 
     // Has messages for that queue expire after that time, whatever the configuration says; 0: never. `node`
     // is a name or a pattern. Holds for links that carried no message so far: all messages of a link live
-    // equally long.
+    // equally long. Throws std::invalid_argument if the time is negative or longer than a year.
     virtual void SetExpiry(const std::string &node, const std::string &queue,
                            std::chrono::milliseconds expire) = 0;
 
