@@ -285,7 +285,7 @@ MUTATIONS = [
              f"{TRANSLATOR}:*"),
     # Buffers
     history("samples that never come fill the memory", "PayloadPool.cpp", "|| _held + size > MostArriving", ""),
-    history("what is given back still counts", "PayloadPool.cpp", "_held -= payload.max_size;", ""),
+    history("what is given back still counts", "PayloadPool.cpp", "_held -= HeldBy(payload.max_size);", ""),
     # Histories
     history("one sample too many is kept", "KeepLast.h", "found->second.Size() < _depth",
           "found->second.Size() <= _depth"),
