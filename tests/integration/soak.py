@@ -323,8 +323,8 @@ def backends(text):
 
 def where(options):
     commit = subprocess.run(["git", "-C", pathlib.Path(__file__).parent, "describe", "--always", "--dirty"],
-                            stdout=subprocess.PIPE, text=True, check=False).stdout.strip()
-    return {"date": f"{datetime.datetime.now(datetime.timezone.utc):%Y-%m-%d %H:%M} UTC", "commit": commit,
+                            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True, check=False).stdout.strip()
+    return {"date": f"{datetime.datetime.now(datetime.timezone.utc):%Y-%m-%d %H:%M} UTC", "commit": commit or "unknown",
             "command": " ".join(["tests/integration/soak.py", *sys.argv[1:]]), "processors": os.cpu_count(),
             "load": round(os.getloadavg()[2], 1), "minutes": options.minutes, "transports": options.transports}
 

@@ -76,8 +76,8 @@ def table(results):
 
 def heading():
     root = pathlib.Path(__file__).resolve().parents[3]
-    commit = subprocess.run(["git", "-C", root, "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE, text=True,
-                            check=False).stdout.strip()
+    commit = subprocess.run(["git", "-C", root, "rev-parse", "--short", "HEAD"], stdout=subprocess.PIPE,
+                            stderr=subprocess.DEVNULL, text=True, check=False).stdout.strip() or "unknown"
     now = datetime.datetime.now(datetime.timezone.utc)
     return (f"{now:%Y-%m-%d %H:%M} UTC, {os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}, commit {commit}. "
             "Bytes are whole Ethernet frames, those of `ip` figures IP packets.\n")
