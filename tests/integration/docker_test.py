@@ -151,8 +151,12 @@ def main():
                 scenario = json.loads((HERE / "scenarios" / name / "scenario.json").read_text())
                 options = argparse.Namespace(ledger_node="ledger_node", transports=transports, keep=None)
                 print(f"scenario {name}")
-                with docker_field.DockerField(engine, scenario["nodes"]) as ground:
-                    wrong = run_scenario.run_in(ground, scenario, options)
+
+                def fly(scenario=scenario, options=options):
+                    with docker_field.DockerField(engine, scenario["nodes"]) as ground:
+                        return run_scenario.run_in(ground, scenario, options)
+
+                wrong = run_scenario.repeated(fly)
                 failed += [f"{name}: {text}" for text in wrong]
     for text in failed[:50]:
         print("WRONG " + text)
