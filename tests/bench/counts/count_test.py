@@ -2,7 +2,8 @@
 """Instructions and allocations of the core and of the gateway for one message, held against limits.json. They do not
 depend on how busy the machine is.
 
-Usage: count_test.py DIRECTORY_OF_PROGRAMS [--update]
+Usage: count_test.py DIRECTORY_OF_PROGRAMS [--allocations] [--update]
+--allocations holds only these against the limits, since instructions depend on the compiler.
 --update writes new limits: what is measured, and 5 % for another processor's memcpy and another build of a library."""
 
 import json
@@ -53,7 +54,8 @@ def main():
             limits[scenario] = {"instructions": round(measured["instructions"] * INSTRUCTIONS_MARGIN),
                                 "allocations": round(measured["allocations"] + ALLOCATIONS_MARGIN, 2)}
         limit = limits[scenario]
-        good = good and all(measured[name] <= limit[name] for name in measured)
+        good = good and all(measured[name] <= limit[name] for name in measured
+                            if name == "allocations" or "--allocations" not in sys.argv)
         print(f"| {scenario} | {measured['instructions']:.0f} | {limit['instructions']} | "
               f"{measured['allocations']:.2f} | {limit['allocations']} |", flush=True)
     if "--update" in sys.argv:
