@@ -193,13 +193,12 @@ def timely(run, observer):
             wanted.append(("UP", end, recovery))
         for state, since, within in wanted:
             first = next((time for time, now in seen if now == state and time > since), None)
-            until = first or (run.ended if state == "UP" else end)
-            if run.took(since, until) > within + (0 if state == "UP" else SLACK_S):
+            if first is None or run.took(since, first) > within + (0 if state == "UP" else SLACK_S):
                 wrong.append(f"{name}: {observer} saw it {state} "
                              + (f"{first - since:.1f} s after" if first else "never") + f", at most {within} s wanted")
         for pair in ((observer, node), (node, observer)):
             first = next((time for time, _ in links[pair] if time > end), None)
-            if links[pair] and run.took(end, first or run.ended) > recovery:
+            if links[pair] and (first is None or run.took(end, first) > recovery):
                 wrong.append(f"{name}: first note from {pair[0]} to {pair[1]} "
                              + (f"{first - end:.1f} s after" if first else "never") + f", at most {recovery} s wanted")
     return wrong
@@ -346,8 +345,8 @@ def ticks_begin_within(run, wanted):
                                             for life in run.lives[other]):
                     continue
                 first = min((e.time * 1e-9 for e in run.events(other, "tick") if e["from"] == node and e.time * 1e-9 > begin),
-                            default=end)
-                if run.took(begin, first) > wanted:
+                            default=None)
+                if first is None or run.took(begin, first) > wanted:
                     wrong.append(f"{other} saw no tick of {node} within {wanted} s after its start")
     return wrong
 

@@ -70,22 +70,35 @@ class TurnsTest(unittest.TestCase):
 
 class CutTest(unittest.TestCase):
     FAULTS = [(10, "cut", ["a"]), (20, "heal", [])]
+    CUT = (2, "UP"), (11.5, "STALE"), (13.5, "LOST")
 
-    def timely(self, *said, waited_s=0.0):
-        made = run(self.FAULTS, a=[], b=[(at, f"peer node=a state={state}") for at, state in said])
-        return expectations.timely(busy(made, 20, 30, waited_s), "b")
+    def timely(self, *said, notes=(), ended=100, waited=(20, 30, 0)):
+        made = run(self.FAULTS, a=[(at, f"intent to=b id={number}") for number, at in enumerate(notes, 1)],
+                   b=[(at, f"peer node=a state={state}") for at, state in said] + taken(*notes))
+        made.ended = ended
+        return expectations.timely(busy(made, *waited), "b")
 
     def test_accepts_a_cut_and_a_return_that_are_seen_soon(self):
-        self.assertEqual(self.timely((2, "UP"), (11.5, "STALE"), (13.5, "LOST"), (22, "UP")), [])
+        self.assertEqual(self.timely(*self.CUT, (22, "UP"), notes=(3, 22)), [])
 
     def test_finds_a_cut_that_is_never_seen(self):
         self.assertEqual(len(self.timely((2, "UP"))), 3)
 
+    def test_finds_a_cut_that_is_never_seen_on_a_busy_machine(self):
+        self.assertEqual(len(self.timely((2, "UP"), (22, "UP"), waited=(10, 20, 40))), 2)
+
+    def test_finds_a_node_that_is_never_up_again_in_a_run_that_ends_soon(self):
+        self.assertEqual(self.timely(*self.CUT, ended=26), ["a cut for 10 s: b saw it UP never, at most 15.0 s wanted"])
+
+    def test_finds_a_link_that_never_delivers_again_in_a_run_that_ends_soon(self):
+        self.assertEqual(self.timely(*self.CUT, (22, "UP"), notes=(3,), ended=26),
+                         ["a cut for 10 s: first note from a to b never, at most 15.0 s wanted"])
+
     def test_finds_a_return_that_is_late_by_more_than_the_machine_took(self):
-        late = (2, "UP"), (11.5, "STALE"), (13.5, "LOST"), (40, "UP")
+        late = *self.CUT, (40, "UP")
         self.assertEqual(len(self.timely(*late)), 1)
-        self.assertEqual(len(self.timely(*late, waited_s=4)), 1)
-        self.assertEqual(self.timely(*late, waited_s=6), [])
+        self.assertEqual(len(self.timely(*late, waited=(20, 30, 4))), 1)
+        self.assertEqual(self.timely(*late, waited=(20, 30, 6)), [])
 
 
 class TicksTest(unittest.TestCase):
@@ -115,18 +128,21 @@ class WordsTest(unittest.TestCase):
 
 
 class BeginningTest(unittest.TestCase):
-    def begin(self, *seen):
+    def begin(self, *seen, waited_s=0):
         """a starts at 1 s and again at 10 s, and sees b; b has seen ticks of a at these times."""
         made = run(b=[(at, f"tick from=a number=1 age_s=0") for at in seen], a=[(2, "tick from=b number=1 age_s=0")])
         made.lives["a"] += judge.read_ledger([f"{10 * S} start node=a life=10 room=5\n"])
         made.lives["b"][0].begin = 0
-        return expectations.ticks_begin_within(made, 1.5)
+        return expectations.ticks_begin_within(busy(made, 10, 100, waited_s), 1.5)
 
     def test_accepts_a_life_that_is_seen_soon(self):
         self.assertEqual(self.begin(1.4, 11.4), [])
 
     def test_finds_a_life_that_is_seen_late(self):
         self.assertEqual(self.begin(1.4, 9, 11.6), ["b saw no tick of a within 1.5 s after its start"])
+
+    def test_finds_a_life_that_is_never_seen_on_a_busy_machine(self):
+        self.assertEqual(self.begin(1.4, 9, waited_s=200), ["b saw no tick of a within 1.5 s after its start"])
 
 
 class ReturnTest(unittest.TestCase):
