@@ -12,6 +12,7 @@ STALE_S = 1.5
 BEAT_S = 0.5
 TICK_S = 0.1
 LOST_S = 3.5
+LINE_S = 1.0  # before a line in the ledger: what the machine took then may lie between the line and what it tells
 LEASE_S = 3.0
 RECOVERY_S = 5.0
 RECOVERY_AFTER_LEASE_S = 15.0
@@ -293,7 +294,8 @@ def state_samples_at_most(run, wanted):
 
 def honest_ages(run, wanted):
     """Seconds: the age of each State that a node shows is at most so far from the time since it was posted, and each node
-    that posts States is seen by all others."""
+    that posts States is seen by all others. If a thread waits after it took the age and before it writes its line, the age in
+    the line is too small. No wait makes it too large."""
     wrong = []
     posted = {(life.node, event["message"], event["number"]): (life.begin, event.time)
               for life in run.all_lives() for event in life.of("state_posted")}
@@ -308,7 +310,8 @@ def honest_ages(run, wanted):
             if not at or event.time < begun or len(run.lives[event["from"]]) > 1:
                 continue
             age_s, true_s = float(event["age_s"]), (event.time - at) * 1e-9
-            if abs(age_s - true_s) - run.waited(at * 1e-9, event.time * 1e-9) > wanted:
+            waited = run.waited(event.time * 1e-9 - LINE_S, event.time * 1e-9)
+            if not -wanted - waited <= age_s - true_s <= wanted:
                 wrong.append(f"{node} and {event['message']} {event['number']} of {event['from']}: age {age_s:.3f} s shown, "
                              f"posted {true_s:.3f} s before")
     return wrong

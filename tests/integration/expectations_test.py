@@ -36,9 +36,9 @@ def accepted(*times):
 class AgesTest(unittest.TestCase):
     POSTED = [(10, "state_posted message=State0 number=1")]
 
-    def ages(self, shown_s):
-        seen = [(10.5, f"state from=a message=State0 number=1 age_s={shown_s}")]
-        return expectations.honest_ages(run(a=self.POSTED, b=seen), 0.1)
+    def ages(self, shown_s, at=10.5, waited=(0, 1, 0)):
+        seen = [(at, f"state from=a message=State0 number=1 age_s={shown_s}")]
+        return expectations.honest_ages(busy(run(a=self.POSTED, b=seen), *waited), 0.1)
 
     def test_accepts_a_right_age(self):
         self.assertEqual(self.ages(0.45), [])
@@ -48,6 +48,15 @@ class AgesTest(unittest.TestCase):
 
     def test_finds_an_age_that_is_too_large(self):
         self.assertEqual(len(self.ages(3600.5)), 1)
+
+    def test_accepts_an_age_that_is_too_small_by_what_the_machine_took_before_the_line(self):
+        self.assertEqual(self.ages(0.3, waited=(10, 10.5, 0.2)), [])
+
+    def test_finds_an_age_that_is_too_small_though_the_machine_was_busy_before(self):
+        self.assertEqual(len(self.ages(19, at=30, waited=(11, 28, 20))), 1)
+
+    def test_finds_an_age_that_is_too_large_though_the_machine_is_busy(self):
+        self.assertEqual(len(self.ages(0.7, waited=(10, 10.5, 5))), 1)
 
     def test_finds_a_node_whose_states_are_never_seen(self):
         self.assertEqual(expectations.honest_ages(run(a=self.POSTED, b=[]), 0.1), ["b saw no State of a"])
