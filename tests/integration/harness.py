@@ -69,9 +69,9 @@ class Waits:
         self._pids = pids
         self._seen = {}  # (process, thread) -> s
         self._late = 0.0
-        self._sums = [(time.monotonic(), self._sum())]
+        self._looks = [self._look()]  # (begin, end, s)
         self._ended = threading.Event()
-        threading.Thread(target=self._look, daemon=True).start()
+        threading.Thread(target=self._follow, daemon=True).start()
 
     def __enter__(self):
         return self
@@ -90,17 +90,22 @@ class Waits:
 
     def _look(self):
         begin = time.monotonic()
+        waited = self._sum() + self._late
+        return begin, time.monotonic(), waited
+
+    def _follow(self):
+        slept = time.monotonic()
         while not self._ended.wait(self.LOOK_S):
-            self._late += time.monotonic() - begin - self.LOOK_S
-            begin = time.monotonic()
-            self._sums.append((begin, self._sum() + self._late))
+            self._late += time.monotonic() - slept - self.LOOK_S
+            self._looks.append(self._look())
+            slept = self._looks[-1][1]  # a look takes time that nothing waits for
 
     def between(self, begin, end):
-        """From the last look before the begin to the first one after the end, or to the last one."""
-        times = [at for at, _ in self._sums]
-        first = max(bisect.bisect_right(times, begin) - 1, 0)
-        last = min(bisect.bisect_left(times, end), len(times) - 1)
-        return max(self._sums[last][1] - self._sums[first][1], 0.0)
+        """From the last look that ended before the begin to the first one that began after the end, or to the last one."""
+        looks = self._looks[:]
+        first = max(bisect.bisect_right([ended for _, ended, _ in looks], begin) - 1, 0)
+        last = min(bisect.bisect_left([began for began, _, _ in looks], end), len(looks) - 1)
+        return max(looks[last][2] - looks[first][2], 0.0)
 
 
 class Idle:
