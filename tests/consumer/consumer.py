@@ -29,7 +29,8 @@ def run(*argv, fails=False, **options):
 
 
 def while_busy(work, *arguments):
-    """Calls work(...), and again if it fails while the machine is busy: flights have limits of time."""
+    """Calls work(...), and again if it fails by sys.exit while other programs keep the machine busy: flights have limits of
+    time."""
     for left in reversed(range(TRIES)):
         idle = harness.Idle()
         try:
@@ -38,7 +39,7 @@ def while_busy(work, *arguments):
         except SystemExit as failure:
             if left == 0 or not idle.is_busy():
                 raise
-            print(f"once more, since {100 * idle.share():.0f} % of the machine were idle: {failure}", flush=True)
+            print(f"once more, since other programs left {100 * idle.share():.0f} % of the machine idle: {failure}", flush=True)
 
 
 def build(cmake, name, folder, prefix):
@@ -71,6 +72,8 @@ def fly_once(folder, prefix):
     if done.returncode == LAB_IMPOSSIBLE:
         print(f"skipped: the template in the lab: {done.stdout.strip()}")
         return
+    if done.returncode not in (0, 1) or harness.ended_badly(folder / "flight"):
+        raise AssertionError(f"the flight of the template ended with {done.returncode}:\n{done.stdout}")
     report = folder / "flight" / "report.html"
     if done.returncode != 0 or "scenario: passed" not in report.read_text(encoding="utf-8"):
         sys.exit(f"the flight of the template ended with {done.returncode}:\n{done.stdout}")

@@ -5,10 +5,13 @@ import bisect
 import os
 import pathlib
 import platform
+import re
+import resource
 import subprocess
 import sys
 import threading
 import time
+from xml.etree import ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "gateway" / "lab"))
@@ -109,26 +112,42 @@ class Waits:
 
 
 class Idle:
-    """The share of the processors that this program may use that is idle, from when this was made on."""
+    """The share that other programs leave idle of the processors that this program may use, from when this was made on. What
+    this program took, and its children that have ended, counts as idle: nodes that never rest do not make the machine busy."""
 
-    BUSY = 0.4  # with less the machine is busy: a fleet of the lab that flies takes a tenth of a processor
+    BUSY = 0.4  # with less the machine is busy
 
     def __init__(self):
-        self._idle, self._all = self._now()
+        self._began = self._now()
 
     @staticmethod
     def _now():
         ours = {f"cpu{number}" for number in os.sched_getaffinity(0)}
         rows = [line.split() for line in pathlib.Path("/proc/stat").read_text(encoding="ascii").splitlines()]
         times = [list(map(int, row[1:9])) for row in rows if row[0] in ours]
-        return sum(row[3] + row[4] for row in times), sum(map(sum, times))  # idle, and waiting for a disk
+        used = [resource.getrusage(whose) for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+        return (sum(row[3] + row[4] for row in times),  # idle, and waiting for a disk
+                sum(one.ru_utime + one.ru_stime for one in used) * os.sysconf("SC_CLK_TCK"), sum(map(sum, times)))
 
-    def share(self):
-        idle, all_of_it = self._now()
-        return (idle - self._idle) / max(all_of_it - self._all, 1)
+    def share(self, with_ours=False):
+        """`with_ours`: what this program took and its children counts as other programs' time."""
+        idle, ours, all_of_it = (now - then for now, then in zip(self._now(), self._began))
+        return min((idle + (0 if with_ours else ours)) / max(all_of_it, 1), 1.0)
 
-    def is_busy(self):
-        return self.share() < self.BUSY
+    def is_busy(self, with_ours=False):
+        return self.share(with_ours) < self.BUSY
+
+
+def ended_badly(results):
+    """The nodes of runs of the lab that ended by themselves, or with another exit code than the scenario expects, by the
+    verdicts in that folder. No busy machine explains that."""
+    found = set()
+    for path in pathlib.Path(results).rglob("junit.xml"):
+        for case in ElementTree.parse(path).getroot().iter("testcase"):
+            failure = case.find("failure")
+            if failure is not None and case.get("name").startswith(("no node ends by itself", "exit code")):
+                found |= set(re.findall(r"(?:^|; )(\S+) ended (?:by itself )?with -?\d", failure.get("message")))
+    return found
 
 
 def run_at_once(cases):

@@ -25,6 +25,7 @@ IMPOSSIBLE = 3
 LIMIT_S = 400  # only keeps a broken run from hanging the test
 TRIES = 3  # of a run, while the machine is busy
 DISTURBED = ("the machine stood still", "the emulated channel was late")  # notes of a run
+ENDERS = {"quitter", "rude", "broken"}  # programs of the scenarios that end as they should not
 
 NODES = """nodes:
   uav*: {count: COUNT, command: [UAV, --config, CONFIG, --node, "{node}"]}
@@ -197,30 +198,36 @@ class Case:
         self.code, self.said = None, ""
         self.was_busy = False
 
-    def run(self):
+    def run(self, alone=True):
+        """`alone`: no other case runs at the same time."""
         idle = harness.Idle()
         done = subprocess.run(self.argv, cwd=self.folder, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                               timeout=LIMIT_S, check=False)
         self.code, self.said = done.returncode, done.stdout
-        self.was_busy = idle.is_busy()
+        self.was_busy = idle.is_busy(with_ours=not alone)
 
     def is_disturbed(self):
-        """True if the machine was too busy, as other programs show, or the notes of the run, or of a replay in a folder of its
-        results."""
+        """True if the machine may explain a failure: it was too busy, as other programs show, or the notes of the run, or of a
+        replay in a folder of its results. No machine explains that the lab or a node ended badly."""
+        if self.code not in (0, 1) or harness.ended_badly(self.results) - ENDERS:
+            return False
         notes = [path.read_text(encoding="utf-8") for path in self.results.rglob("junit.xml")]
         return self.was_busy or any(words in text for text in notes for words in DISTURBED)
 
     def judge(self, judge, *more):
-        """Calls judge(self, ...). If it fails and the machine was too busy, the run is repeated, alone. Returns false if the
-        machine was too busy in every try."""
+        """Calls judge(self, ...). If it fails and the machine may explain that, the run is repeated, alone. Returns false if
+        other programs kept the machine busy in every try."""
+        always_busy = True
         for number in range(1, TRIES + 1):
             try:
                 judge(self, *more)
                 return True
             except SystemExit as failure:
-                if not self.is_disturbed():
+                always_busy = always_busy and self.was_busy
+                if not self.is_disturbed() or (number == TRIES and not always_busy):
                     raise
-                print(f"{self.folder.name}: the machine was busy in try {number} of {TRIES}: {failure}", flush=True)
+                print(f"{self.folder.name}: the machine was {'busy' if self.was_busy else 'disturbed'} in try {number} of "
+                      f"{TRIES}: {failure}", flush=True)
             if number < TRIES:
                 shutil.rmtree(self.results, ignore_errors=True)
                 self.run()
@@ -269,7 +276,7 @@ def check_faults(case):
 
 def skip_unless(judged):
     if not judged:
-        print(f"skipped: the machine was busy in each of {TRIES} runs; run the test on an idle machine")
+        print(f"skipped: other programs kept the machine busy in each of {TRIES} runs; run the test on an idle machine")
         sys.exit(SKIPPED)
 
 
@@ -330,7 +337,7 @@ def main():
         no_start = Case(folder, "no_start", NO_START, 2, rabit, uav)
         user = Case(folder, "user", SMALL, 3, rabit, uav, AS_USER)
         refused = Case(folder, "refused", SMALL, 2, rabit, uav, WITHOUT_RIGHTS)
-        threads = [threading.Thread(target=case.run) for case in (lan, radio, failing, faults, no_start, user, refused)]
+        threads = [threading.Thread(target=case.run, args=[False]) for case in (lan, radio, failing, faults, no_start, user, refused)]
         for thread in threads:
             thread.start()
         for thread in threads:
