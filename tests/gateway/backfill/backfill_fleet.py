@@ -22,6 +22,7 @@ class Fleet:
         self.transport = transport
         self.folder = pathlib.Path(folder)
         self.aircraft = [node for node in ground.nodes if node != "ground"]
+        self.waits = harness.Waits(ground.pids)
 
     def write(self, node, more=""):
         common = (f"node: {node}\ninterfaces: [{self.ground.address(node)}]\ntransport: {self.transport}\n"

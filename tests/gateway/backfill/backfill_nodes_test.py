@@ -11,8 +11,9 @@ import time
 import backfill_fleet as bf
 
 POSTS = ["--rate", "20", "--posts", "300"]
-# All clocks are this machine's, and each node knows that of the other one by half a round trip: 1 ms on an idle machine.
-WORST_TIME_MS = 1000
+# All clocks are this machine's, and each node knows that of the other one by half a round trip: 1 ms on an idle machine. A
+# busy machine adds what the nodes waited for a processor.
+WORST_TIME_MS = 100
 
 
 def begin(fleet, more=""):
@@ -28,12 +29,13 @@ def begin(fleet, more=""):
 
 def end(fleet, least):
     took, figures = fleet.wait_until_whole(["uav1"], bf.LIMIT, least)
-    print(f"whole after {took:.0f} s: {figures}")
+    waited_ms = 1000 * fleet.waits.between(0, time.monotonic())
+    print(f"whole after {took:.0f} s, waited for a processor for {waited_ms:.0f} ms: {figures}")
     for row in figures:
         assert row["posted"] >= (least if row["message"] == "Sample" else least // 10), row
         assert row["twice"] == 0 and row["other_bytes"] == 0, row
         assert row["backfilled"] > 0, row
-        assert row["worst_time_ms"] < WORST_TIME_MS, row
+        assert row["worst_time_ms"] < WORST_TIME_MS + waited_ms, row
 
 
 def killed(fleet):
