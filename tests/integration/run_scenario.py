@@ -281,7 +281,8 @@ def figures(seen):
 
 class StoodStill(Exception):
     """All that seems wrong in a run in which the whole machine stood still for so long that nodes become STALE. Nobody can tell
-    what the nodes would have done. Messages that are lost, twice or out of order are wrong in any case."""
+    what the nodes would have done. Messages that are lost, twice or out of order are wrong in any case, and so is a node that ends
+    by itself or with an error."""
 
 
 def repeated(a_run):
@@ -331,7 +332,7 @@ def run_in(ground, scenario, options):
     # Judged before the stop, which the other nodes see as LOST.
     wrong += expectations.states(expectations.Run(fleet.ledgers(), faults.done, waits.between), scenario.get("states", {}))
     ended = time.monotonic()
-    wrong += fleet.stop()
+    unsound = fleet.stop()
     ledgers = fleet.ledgers()
     if options.keep:
         shutil.copytree(ground.folder, options.keep, dirs_exist_ok=True)
@@ -347,7 +348,7 @@ def run_in(ground, scenario, options):
     if air:
         print(radio_field.summary(air))
     wrong += expectations.check(seen, scenario.get("expect", {}))
-    unsound = judge.judge(ledgers[node] for node in scenario.get("judged", ledgers))
+    unsound += judge.judge(ledgers[node] for node in scenario.get("judged", ledgers))
     if wrong and not unsound and any(end - begin >= expectations.STALE_S for begin, end in still):
         raise StoodStill(wrong)
     return wrong + unsound
