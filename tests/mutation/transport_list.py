@@ -205,7 +205,7 @@ MUTATIONS = [
     guard("a participant is asked again and again", "AuthenticationRetries.cpp", "std::exchange(peer.IsToAsk, false)",
           "peer.IsToAsk"),
     guard("a participant that is silent is tried again", "AuthenticationRetries.cpp",
-          "|| peer.AnnouncedAt <= peer.ProgressAt", ""),
+          "(isSilent && !_forgetsSilent)", "false"),
     guard("repetitions are progress", "AuthenticationRetries.cpp", "if ((known.Steps & bit) == 0)", "if (true)"),
     guard("a handshake may sign other addresses", "AuthenticationRetries.cpp", "return agrees;", "return true;"),
     guard("the vendor sees a second content of a participant", "AuthenticationRetries.cpp",

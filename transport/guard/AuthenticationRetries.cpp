@@ -102,7 +102,8 @@ void AuthenticationRetries::Gone(const GuidPrefix &peer)
 std::optional<AuthenticationRetries::TimePoint> AuthenticationRetries::DueOf(const Peer &peer,
                                                                              Duration answerTime) const
 {
-    if (!peer.IsKnown || peer.IsAuthenticated || peer.AnnouncedAt <= peer.ProgressAt)
+    const bool isSilent = peer.AnnouncedAt <= peer.ProgressAt;
+    if (!peer.IsKnown || peer.IsAuthenticated || (isSilent && !_forgetsSilent))
     {
         return std::nullopt;
     }

@@ -28,7 +28,8 @@ namespace Rabit::Rtps
 // - Until a participant is forgotten, the vendor sees no announcement of it with other content (addresses,
 //   security). Those are the content that its handshake must confirm: see Signs.
 // - Bounds: each attempt ends after a bounded number of steps, whatever a forger sends; attempts come with
-//   exponential backoff; and only a participant that goes on announcing itself is tried again.
+//   exponential backoff; and only a participant that goes on announcing itself is tried again. A silent one
+//   is the vendor's to forget.
 //
 // A pure state machine, not thread-safe.
 class AuthenticationRetries
@@ -61,8 +62,13 @@ public:
         std::int64_t Number = 0;  // of the sample
     };
 
-    // `stalled`: in place of Stalled.
-    explicit AuthenticationRetries(Duration stalled = Stalled) : _stalled(stalled) {}
+    // `forgetsSilent`: a participant that announces itself no more is forgotten, too. For a vendor that does
+    // not heed the lease of one that is not authenticated, and would send to it for good. `stalled`: in place
+    // of Stalled.
+    explicit AuthenticationRetries(bool forgetsSilent = false, Duration stalled = Stalled)
+        : _forgetsSilent(forgetsSilent), _stalled(stalled)
+    {
+    }
 
     // A participant was announced. Returns false if the vendor should not see that, because it knows the
     // participant with other content.
@@ -115,6 +121,7 @@ private:
     std::optional<TimePoint> DueOf(const Peer &peer, Duration answerTime) const;
     void MakeRoom();
 
+    const bool _forgetsSilent;
     const Duration _stalled;
     std::map<GuidPrefix, Peer> _peers;
 };

@@ -37,9 +37,11 @@ public:
         std::function<void(const GuidPrefix &)> Drop;
     };
 
-    // `stalled`: as AuthenticationRetries.
-    explicit AuthenticationThread(AuthenticationRetries::Duration stalled = AuthenticationRetries::Stalled)
-        : _retries(stalled), _lookEvery(std::min<Clock::duration>(stalled, LongestBetweenLooks))
+    // As AuthenticationRetries.
+    explicit AuthenticationThread(bool forgetsSilent = false,
+                                  AuthenticationRetries::Duration stalled = AuthenticationRetries::Stalled)
+        : _retries(forgetsSilent, stalled),
+          _lookEvery(std::min<Clock::duration>(stalled, LongestBetweenLooks))
     {
     }
     ~AuthenticationThread() { Stop(); }

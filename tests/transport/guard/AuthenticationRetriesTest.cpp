@@ -100,6 +100,21 @@ TEST_F(AuthenticationRetriesTest, AnAuthenticatedParticipantIsNotForgottenForWha
     EXPECT_TRUE(Retries.TakeToAsk().empty());
 }
 
+TEST_F(AuthenticationRetriesTest, ASilentParticipantIsTheVendorsToForgetUnlessTheVendorDoesNot)
+{
+    AuthenticationRetries keeping{true};
+    for (AuthenticationRetries *retries : {&Retries, &keeping})
+    {
+        retries->Announced(Sender, {.Digest = 1, .Number = 7}, Now);
+        retries->Exchanged(Sender, Step::Request, true, Now);
+    }
+    EXPECT_TRUE(keeping.Doubtful(Now + Stalled - 1s, AnswerTime).empty());
+    EXPECT_EQ(keeping.Doubtful(Now + Stalled, AnswerTime), std::vector{Sender});
+    EXPECT_TRUE(Retries.Doubtful(Now + 1h, AnswerTime).empty());
+    EXPECT_EQ(keeping.Forget(Sender), 8);
+    EXPECT_FALSE(keeping.Due(AnswerTime));
+}
+
 TEST_F(AuthenticationRetriesTest, AnAuthenticatedParticipantThatBeginsAnewIsAskedAtOnce)
 {
     Authenticate();

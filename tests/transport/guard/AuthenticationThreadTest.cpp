@@ -133,7 +133,7 @@ protected:
     std::atomic<std::int64_t> ForgottenWith{0};
     std::atomic<int> Looks{0};
     std::atomic<int> WaitingLooks{0};
-    AuthenticationThread Thread{std::chrono::milliseconds(1)};
+    AuthenticationThread Thread{false, std::chrono::milliseconds(1)};
 };
 
 TEST_F(AuthenticationCallsTest, AParticipantThatIsNotAuthenticatedIsForgotten)

@@ -66,7 +66,7 @@ private:
     std::set<Rtps::GuidPrefix> _proven;  // authenticated participants; guarded by _provenMutex
     const std::shared_ptr<Rtps::MeetingThread> _meeting;
     const std::shared_ptr<Rtps::AuthenticationThread> _authentication =
-        std::make_shared<Rtps::AuthenticationThread>();
+        std::make_shared<Rtps::AuthenticationThread>(AwaitsProtectedAnnouncements);
     const std::shared_ptr<KeyThread> _keys;  // null without security
     // The vendor would give each participant of a process the next number, and with it the next ports, even
     // if earlier participants are gone. A session that joins the network anew would leave the ports at which
