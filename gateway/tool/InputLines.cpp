@@ -1,10 +1,10 @@
 #include "InputLines.h"
 
-#include <condition_variable>
-#include <deque>
-#include <iostream>
-#include <mutex>
-#include <thread>
+#include <poll.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
 #include <utility>
 
 namespace Rabit::Tool
@@ -17,66 +17,104 @@ constexpr std::size_t MostLines = 1000;
 
 }  // namespace
 
-struct InputLines::State
+InputLines::InputLines(std::function<void()> onLine) : _onLine(std::move(onLine))
 {
-    std::mutex Mutex;
-    std::condition_variable Taken;
-    std::deque<std::string> Lines;
-    bool IsOver = false;
-    std::function<void()> OnLine;
-
-    // Returns false if the reading thread should end.
-    bool Add(std::optional<std::string> line)
+    if (::pipe(_end.data()) != 0)
     {
-        std::unique_lock lock(Mutex);
-        Taken.wait(lock, [this] { return Lines.size() < MostLines || !OnLine; });
-        if (!OnLine)
-        {
-            return false;
-        }
-        IsOver = !line;
-        if (line)
-        {
-            Lines.push_back(std::move(*line));
-        }
-        OnLine();
-        return !IsOver;
+        throw std::system_error(errno, std::generic_category(), "standard input cannot be read");
     }
-};
-
-InputLines::InputLines(std::function<void()> onLine) : _state(std::make_shared<State>())
-{
-    _state->OnLine = std::move(onLine);
-    std::thread(
-        [state = _state]
-        {
-            std::string line;
-            while (std::getline(std::cin, line) && state->Add(line))
-            {
-            }
-            state->Add(std::nullopt);
-        })
-        .detach();
+    _reader = std::thread([this] { Read(); });
 }
 
 InputLines::~InputLines()
 {
-    const std::lock_guard lock(_state->Mutex);
-    _state->OnLine = nullptr;
-    _state->Taken.notify_all();
+    {
+        const std::lock_guard lock(_mutex);
+        _isEnding = true;
+    }
+    _changed.notify_all();
+    ::close(_end[1]);
+    _reader.join();
+    ::close(_end[0]);
+}
+
+void InputLines::Read()
+{
+    std::string text;
+    for (;;)
+    {
+        std::array<pollfd, 2> files{{{STDIN_FILENO, POLLIN, 0}, {_end[0], POLLIN, 0}}};
+        const int ready = ::poll(files.data(), files.size(), -1);
+        if (ready < 0 && errno == EINTR)
+        {
+            continue;
+        }
+        if (ready < 0 || files[1].revents != 0)
+        {
+            break;
+        }
+        std::array<char, 4096> buffer;
+        const ssize_t count = ::read(STDIN_FILENO, buffer.data(), buffer.size());
+        if (count < 0 && (errno == EINTR || errno == EAGAIN))
+        {
+            continue;
+        }
+        if (count <= 0)
+        {
+            break;
+        }
+        text.append(buffer.data(), static_cast<std::size_t>(count));
+        std::size_t begin = 0;
+        for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
+        {
+            if (!Add(text.substr(begin, end - begin)))
+            {
+                return;
+            }
+        }
+        text.erase(0, begin);
+    }
+    if (text.empty() || Add(std::move(text)))
+    {
+        Add(std::nullopt);
+    }
+}
+
+bool InputLines::Add(std::optional<std::string> line)
+{
+    {
+        std::unique_lock lock(_mutex);
+        _changed.wait(lock, [this] { return _lines.size() < MostLines || _isEnding; });
+        if (_isEnding)
+        {
+            return false;
+        }
+        if (line)
+        {
+            _lines.push_back(std::move(*line));
+        }
+        else
+        {
+            _isOver = true;
+        }
+    }
+    _onLine();
+    return true;
 }
 
 bool InputLines::Take(Line &line)
 {
-    const std::lock_guard lock(_state->Mutex);
-    if (_state->Lines.empty())
     {
-        line.Text.reset();
-        return _state->IsOver;
+        const std::lock_guard lock(_mutex);
+        if (_lines.empty())
+        {
+            line.Text.reset();
+            return _isOver;
+        }
+        line.Text = std::move(_lines.front());
+        _lines.pop_front();
     }
-    line.Text = std::move(_state->Lines.front());
-    _state->Lines.pop_front();
-    _state->Taken.notify_all();
+    _changed.notify_all();
     return true;
 }
 

@@ -1,20 +1,25 @@
 #pragma once
 
+#include <array>
+#include <condition_variable>
+#include <deque>
 #include <functional>
-#include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 
 namespace Rabit::Tool
 {
 
 // The lines of standard input, read on a thread of their own, so that waiting for a line can end with Ctrl-C.
-// A read that is under way when the object is destroyed goes on until the process ends.
+// The thread ends with the object: a thread that waits inside std::cin would hold the lock of standard input,
+// for which glibc waits when a process ends (2.41, Debian 13).
 class InputLines
 {
 public:
     // `onLine` is called on that thread when a line or the end has come, and never after the object is
-    // destroyed.
+    // destroyed. Throws std::system_error if no pipe can be made.
     explicit InputLines(std::function<void()> onLine);
     ~InputLines();
     InputLines(const InputLines &) = delete;
@@ -28,8 +33,18 @@ public:
     bool Take(Line &line);
 
 private:
-    struct State;
-    const std::shared_ptr<State> _state;
+    void Read();
+    // Empty: the end of the input. Returns false if the thread should end.
+    bool Add(std::optional<std::string> line);
+
+    const std::function<void()> _onLine;
+    std::array<int, 2> _end{-1, -1};  // a pipe, of which one end is closed when the thread should end
+    std::mutex _mutex;                // guards the next three
+    std::deque<std::string> _lines;
+    bool _isOver = false;
+    bool _isEnding = false;
+    std::condition_variable _changed;
+    std::thread _reader;  // last: it uses the others
 };
 
 }  // namespace Rabit::Tool
