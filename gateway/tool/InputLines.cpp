@@ -1,10 +1,7 @@
 #include "InputLines.h"
 
-#include <poll.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <system_error>
+#include <array>
+#include <stdexcept>
 #include <utility>
 
 namespace Rabit::Tool
@@ -19,9 +16,9 @@ constexpr std::size_t MostLines = 1000;
 
 InputLines::InputLines(std::function<void()> onLine) : _onLine(std::move(onLine))
 {
-    if (::pipe(_end.data()) != 0)
+    if (!_input.IsOpen())
     {
-        throw std::system_error(errno, std::generic_category(), "standard input cannot be read");
+        throw std::runtime_error("standard input cannot be read: no pipe can be made");
     }
     _reader = std::thread([this] { Read(); });
 }
@@ -33,37 +30,17 @@ InputLines::~InputLines()
         _isEnding = true;
     }
     _changed.notify_all();
-    ::close(_end[1]);
+    _input.Stop();
     _reader.join();
-    ::close(_end[0]);
 }
 
 void InputLines::Read()
 {
     std::string text;
-    for (;;)
+    std::array<char, 4096> buffer;
+    while (const std::size_t count = _input.Read(buffer))
     {
-        std::array<pollfd, 2> files{{{STDIN_FILENO, POLLIN, 0}, {_end[0], POLLIN, 0}}};
-        const int ready = ::poll(files.data(), files.size(), -1);
-        if (ready < 0 && errno == EINTR)
-        {
-            continue;
-        }
-        if (ready < 0 || files[1].revents != 0)
-        {
-            break;
-        }
-        std::array<char, 4096> buffer;
-        const ssize_t count = ::read(STDIN_FILENO, buffer.data(), buffer.size());
-        if (count < 0 && (errno == EINTR || errno == EAGAIN))
-        {
-            continue;
-        }
-        if (count <= 0)
-        {
-            break;
-        }
-        text.append(buffer.data(), static_cast<std::size_t>(count));
+        text.append(buffer.data(), count);
         std::size_t begin = 0;
         for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1)
         {

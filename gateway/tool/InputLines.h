@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -9,17 +8,18 @@
 #include <string>
 #include <thread>
 
+#include "StandardInput.h"
+
 namespace Rabit::Tool
 {
 
 // The lines of standard input, read on a thread of their own, so that waiting for a line can end with Ctrl-C.
-// The thread ends with the object: a thread that waits inside std::cin would hold the lock of standard input,
-// for which glibc waits when a process ends (2.41, Debian 13).
+// The thread ends with the object.
 class InputLines
 {
 public:
     // `onLine` is called on that thread when a line or the end has come, and never after the object is
-    // destroyed. Throws std::system_error if no pipe can be made.
+    // destroyed. Throws std::runtime_error if standard input cannot be read.
     explicit InputLines(std::function<void()> onLine);
     ~InputLines();
     InputLines(const InputLines &) = delete;
@@ -38,8 +38,8 @@ private:
     bool Add(std::optional<std::string> line);
 
     const std::function<void()> _onLine;
-    std::array<int, 2> _end{-1, -1};  // a pipe, of which one end is closed when the thread should end
-    std::mutex _mutex;                // guards the next three
+    StandardInput _input;
+    std::mutex _mutex;  // guards the next three
     std::deque<std::string> _lines;
     bool _isOver = false;
     bool _isEnding = false;

@@ -1,9 +1,7 @@
 #include "KeyInput.h"
 
-#include <poll.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <utility>
 
 namespace Rabit::Tool
@@ -19,7 +17,7 @@ constexpr std::size_t MostKeys = 100;
 KeyInput::KeyInput(std::function<void()> onKey) : _onKey(std::move(onKey))
 {
     if (::isatty(STDIN_FILENO) == 0 || ::tcgetpgrp(STDIN_FILENO) != ::getpgrp() ||
-        ::tcgetattr(STDIN_FILENO, &_before) != 0 || ::pipe(_end.data()) != 0)
+        ::tcgetattr(STDIN_FILENO, &_before) != 0 || !_input.IsOpen())
     {
         return;
     }
@@ -35,9 +33,8 @@ KeyInput::~KeyInput()
 {
     if (_reader.joinable())
     {
-        ::close(_end[1]);
+        _input.Stop();
         _reader.join();
-        ::close(_end[0]);
         ::tcsetattr(STDIN_FILENO, TCSANOW, &_before);
     }
 }
@@ -56,19 +53,9 @@ std::optional<char> KeyInput::Take()
 
 void KeyInput::Read()
 {
-    for (;;)
+    char key = 0;
+    while (_input.Read({&key, 1}) == 1)
     {
-        std::array<pollfd, 2> files{{{STDIN_FILENO, POLLIN, 0}, {_end[0], POLLIN, 0}}};
-        const int ready = ::poll(files.data(), files.size(), -1);
-        if (ready < 0 && errno == EINTR)
-        {
-            continue;
-        }
-        char key = 0;
-        if (ready < 0 || files[1].revents != 0 || ::read(STDIN_FILENO, &key, 1) != 1)
-        {
-            return;
-        }
         {
             const std::lock_guard lock(_mutex);
             if (_keys.size() < MostKeys)

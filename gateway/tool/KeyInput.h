@@ -2,12 +2,13 @@
 
 #include <termios.h>
 
-#include <array>
 #include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <thread>
+
+#include "StandardInput.h"
 
 namespace Rabit::Tool
 {
@@ -32,7 +33,7 @@ private:
 
     const std::function<void()> _onKey;
     termios _before{};
-    std::array<int, 2> _end{-1, -1};  // a pipe
+    StandardInput _input;
     std::mutex _mutex;
     std::deque<char> _keys;
     std::thread _reader;
