@@ -254,8 +254,14 @@ void AirTraffic::LookAt(std::size_t publisher, Duration now)
         of.Fetch();
         isDue = of.DueAt(now) <= now && (_mirrored == Mirrored::All || MayCopy(of, now));
     }
-    isDue ? _schedule.Ready(_publisherStreams[publisher], of.NextBytes(_cost))
-          : _schedule.NotReady(_publisherStreams[publisher]);
+    if (isDue)
+    {
+        _schedule.Ready(_publisherStreams[publisher], of.NextBytes(_cost));
+    }
+    else
+    {
+        _schedule.NotReady(_publisherStreams[publisher]);
+    }
 }
 
 // Of values that go by another path, too. They go while KeptShare of a budget is free, since copies of queue

@@ -209,6 +209,8 @@ private:
     // Without the mutex: decodes the large messages that are complete, and has the links deliver them. For
     // threads that may take that long; every call of the links that may complete a message comes before one.
     void DecodeLarge(News &news);
+    // Without the mutex: tells the news, and if there are `large` messages, decodes them. Clears the news.
+    void TellAndDecode(News &news, bool large);
     // With the mutex: notes the path by which a frame has come.
     void NoteCame(const SampleInfo &info, const LinkFrame &frame, std::size_t path);
     // With the mutex: notes that another live node must have this name, if this one's incarnation was raised

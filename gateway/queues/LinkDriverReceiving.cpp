@@ -68,12 +68,7 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way)
         large = _incoming.AnyUndecoded();
         TakeNews(news);
     }
-    Tell(news);
-    if (large)
-    {
-        DecodeLarge(news);
-    }
-    news.Clear();
+    TellAndDecode(news, large);
     if (sooner)
     {
         _wake();
@@ -134,6 +129,16 @@ void LinkDriver::NoteRaises(LinkTime now)
             "anew again and again. Give one of them another name";
         _recent.Note(problem, now);
     }
+}
+
+void LinkDriver::TellAndDecode(News &news, bool large)
+{
+    Tell(news);
+    if (large)
+    {
+        DecodeLarge(news);
+    }
+    news.Clear();
 }
 
 void LinkDriver::DecodeLarge(News &news)

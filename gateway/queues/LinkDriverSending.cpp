@@ -32,12 +32,7 @@ LinkDriver::Duration LinkDriver::Service()
         large = _incoming.AnyUndecoded();
         TakeNews(news);
     }
-    Tell(news);
-    if (large)
-    {
-        DecodeLarge(news);
-    }
-    news.Clear();
+    TellAndDecode(news, large);
     WriteOut(0);
     return next;
 }
@@ -95,12 +90,7 @@ LinkDriver::Duration LinkDriver::Advance()
         large = _incoming.AnyUndecoded();
         TakeNews(news);
     }
-    Tell(news);
-    if (large)
-    {
-        DecodeLarge(news);
-    }
-    news.Clear();
+    TellAndDecode(news, large);
     return next;
 }
 
