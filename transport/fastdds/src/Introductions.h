@@ -11,13 +11,14 @@
 namespace Rabit::FastDds
 {
 
-// Announcements of participants, until their senders are authenticated.
+// Announcements of participants, until their senders are authenticated or forgotten.
 //
 // Fast DDS 3 reads a plain announcement only to begin a handshake. It discovers the participant's endpoints
 // when it has a protected announcement (OMG DDS Security 1.1, 7.4). Fast DDS 2.9 and Cyclone DDS say that
 // they have the writer of protected announcements, but never send one. So the last plain announcement is
 // handed to the vendor again after the handshake, which has confirmed its content
-// (guard/AuthenticationRetries.h). Thread-safe.
+// (guard/AuthenticationRetries.h); or before the goodbye that makes the vendor forget the participant.
+// Thread-safe.
 class Introductions
 {
 public:
