@@ -73,13 +73,13 @@ bool EndsLikeStatistics(std::span<const std::uint8_t> datagram)
 
 std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram)
 {
-    if (!EndsLikeStatistics(datagram))
+    bool hasStatistics = false;
+    if (EndsLikeStatistics(datagram))
     {
-        return datagram.size();
+        VisitSubmessages(datagram, [&](const ConstSubmessage &part)
+                         { hasStatistics = part.Whole.data() == datagram.last(StatisticsSize).data(); });
     }
-    // A message keeps its statistics if it would still end like statistics without them.
-    const std::size_t size = datagram.size() - StatisticsSize;
-    return EndsLikeStatistics(datagram.first(size)) ? datagram.size() : size;
+    return datagram.size() - (hasStatistics ? StatisticsSize : 0);
 }
 
 void Blank(const Submessage &submessage)

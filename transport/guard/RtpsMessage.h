@@ -32,8 +32,8 @@ std::optional<Submessage> TakeSubmessage(std::span<std::uint8_t> &rest);
 // Size of a submessage with statistics.
 constexpr std::size_t StatisticsSize = SubmessageHeaderSize + 56;
 
-// Size of a message of our own without the statistics that Fast DDS puts at the end of each: 60 unused bytes
-// that would take a radio's time.
+// Size of a message without the statistics that Fast DDS puts at the end of each of its own: 60 unused bytes
+// that would take a radio's time. The message may still end like statistics.
 std::size_t SizeWithoutStatistics(std::span<const std::uint8_t> datagram);
 
 // True if Fast DDS's sockets would mistake the end of a message for their statistics, and write into it: they

@@ -90,6 +90,27 @@ TEST_P(Conformance, InstancesEndWithTheirLastWriter)
     EXPECT_THAT(end.Bytes, IsEmpty());
 }
 
+// Each end is a datagram with a stamp and a number of its own, so that some byte in it has every value.
+TEST_P(Conformance, TheEndOfEachOfManyWritersIsHeard)
+{
+    constexpr int Rounds = 40;
+    constexpr std::size_t Together = 16;
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    const auto reader = reading->CreateReader(TextTopic(), Telemetry(), {}, [](auto &&...) {});
+    for (int round = 0; round < Rounds; ++round)
+    {
+        std::vector<WriterPtr> writers;
+        while (writers.size() < Together)
+        {
+            writers.push_back(writing->CreateWriter(TextTopic(), Telemetry(), {}));
+        }
+        ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == static_cast<int>(Together); })) << round;
+        writers.clear();
+        ASSERT_TRUE(Until([&] { return reader->MatchedWriters() == 0; })) << round;
+    }
+}
+
 TEST_P(Conformance, WhatWasDisposedBeforeItCameALateReaderHearsNothingOf)
 {
     const auto writing = Open("uav1");

@@ -219,6 +219,14 @@ public:
             WriteWithoutDestination(datagram, _shortened);
             datagram = _shortened;
         }
+        if (EndsLikeStatistics(datagram) && datagram.size() < whole.size())
+        {
+            // The socket would write its statistics into this end, so the message keeps those that it has.
+            std::vector<std::uint8_t> kept(datagram.begin(), datagram.end());
+            Append(kept, whole.last(StatisticsSize));
+            _shortened = std::move(kept);
+            datagram = _shortened;
+        }
         return Hold(sender, datagram) || SendChosen(sender, datagram, message.HasSamples, timeout);
     }
 
