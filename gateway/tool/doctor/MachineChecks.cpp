@@ -10,7 +10,8 @@ namespace Rabit::Tool::Doctor
 namespace
 {
 
-// Bytes that the gateways' transports ask for; the kernel grants at most net.core.rmem_max.
+// Bytes that both backends ask for (ParticipantSettings.cpp, DomainConfig.cpp); the kernel grants at most
+// net.core.rmem_max.
 constexpr std::uint64_t WantedBuffer = 4u << 20;
 constexpr std::size_t SmallestDatagram = 1000;
 

@@ -12,9 +12,9 @@ const PART_FRESH_S = {mission: 3.5, health: 3.5, targets: 2.5, camera: 2.5, pict
 const TARGET_SEEN_S = 30;
 
 const URGENCY = ['lost', 'stale', 'alarm', 'warning', 'waiting', 'up'];
-// Below these percentages an aircraft needs attention because of its battery.
+// Below these percentages an aircraft needs attention because of its battery. FleetTable.h has the same limits.
 const BATTERY_ALARM = 10;
-const BATTERY_WARNING = 25;  // percent; as FleetRow::BatteryWarning of the terminal
+const BATTERY_WARNING = 25;
 
 // '', 'warning' or 'alarm'.
 export function batteryLevel(percent) {
