@@ -37,7 +37,7 @@ FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescr
 
 FastDdsWriter::~FastDdsWriter()
 {
-    rtps::RTPSDomain::removeRTPSWriter(_writer);
+    _history.RemoveWriter(_writer);
 }
 
 WriteResult FastDdsWriter::SendTo(const std::string &node, const SampleEncoder &sample,

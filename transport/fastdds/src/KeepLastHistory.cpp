@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
+#include <mutex>
 #include <string_view>
 
 namespace Rabit::FastDds
@@ -53,6 +55,20 @@ bool KeepLastHistory::Add(Change &change, rtps::WriteParams &params,
         return false;
     }
     return true;
+}
+
+void KeepLastHistory::RemoveWriter(rtps::RTPSWriter *writer)
+{
+    {
+        // Version 2.9 frees the samples while they are in the history, and its timer of heartbeats runs on:
+        // it would count from a freed sample's number to the next one's for ever.
+        const std::lock_guard lock(writer->getMutex());
+        while (!m_changes.empty())
+        {
+            remove_change_nts(std::prev(m_changes.end()));
+        }
+    }
+    rtps::RTPSDomain::removeRTPSWriter(writer);
 }
 
 // Drops only this sample: the vendor is iterating the history, from the newest to the oldest.

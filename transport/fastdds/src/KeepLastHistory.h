@@ -28,6 +28,9 @@ public:
     // kept for late readers, or it or a later one has ended the instance. May be called while it is being
     // added.
     void ReceivedByAll(const Change &change);
+    // Removes the history's writer from its participant. Call without the writer's mutex, and only if nothing
+    // writes any more.
+    void RemoveWriter(rtps::RTPSWriter *writer);
 
 private:
     void OnRemoval(const Change &change) override;
