@@ -62,7 +62,7 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
                 return false;
             }
             known.Place = Claim(digest);
-            known.HasMoved = true;
+            known.NextIsNews = true;
             known.IsNewThere = true;
         }
         known.Placed = now;
@@ -117,13 +117,21 @@ std::int64_t KnownPeers::AnnouncementOf(const GuidPrefix &peer, std::int64_t num
         known.Ours = std::max(number, _highestAnnouncement + 1);
         known.Theirs = number;
     }
-    else if (known.HasMoved || number > known.Theirs)
+    else if (known.NextIsNews || number > known.Theirs)
     {
         ++known.Ours;
         known.Theirs = number;
     }
-    known.HasMoved = false;
+    known.NextIsNews = false;
     return known.Ours;
+}
+
+std::int64_t KnownPeers::GoodbyeOf(const GuidPrefix &peer, std::int64_t number)
+{
+    _peers.at(peer).NextIsNews = true;
+    const std::int64_t ours = AnnouncementOf(peer, number);
+    _peers.at(peer).NextIsNews = true;
+    return ours;
 }
 
 bool KnownPeers::MakeRoom(TimePoint now)

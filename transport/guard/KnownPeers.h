@@ -52,6 +52,9 @@ public:
     // rise with the sender's, and also when it has moved: otherwise addresses forged before the true ones
     // were heard would stay. The peer must be known.
     std::int64_t AnnouncementOf(const GuidPrefix &peer, std::int64_t number);
+    // The same for the peer's goodbye, which is always news, and so is the next announcement: a replay of the
+    // peer's card has numbers of its own.
+    std::int64_t GoodbyeOf(const GuidPrefix &peer, std::int64_t number);
 
     // The peer, which must be known, announced a writer or a reader; `digest` is the hash of the
     // announcement. Returns false if it contradicts the known one. An endpoint that changes its QoS repeats
@@ -114,7 +117,7 @@ private:
         TimePoint Placed{};                  // when its addresses were last announced
         std::chrono::milliseconds Period{};  // interval at which they are announced
         TimePoint Heard{};
-        bool HasMoved = false;    // since its last announcement
+        bool NextIsNews = false;  // its next announcement, whatever its number
         std::int64_t Theirs = 0;  // the highest number of its announcements
         std::int64_t Ours = 0;
         std::map<EntityId, Numbers> Writers;

@@ -129,7 +129,8 @@ void RtpsGuard::ReplaceNumber(const Submessage &submessage, const Delivery &deli
 void RtpsGuard::ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
                                     const GuidPrefix &sender)
 {
-    WriteSampleNumber(submessage, _peers.AnnouncementOf(sender, delivery.First));
+    WriteSampleNumber(submessage, delivery.Alive ? _peers.AnnouncementOf(sender, delivery.First)
+                                                 : _peers.GoodbyeOf(sender, delivery.First));
 }
 
 void RtpsGuard::ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender)

@@ -40,7 +40,7 @@ protected:
     {
         std::size_t handed = 0;
         EXPECT_TRUE(Guard.Admit(
-            datagram, SenderHost, RtpsGuard::TimePoint(std::chrono::hours(1)),
+            datagram, SenderHost, Now,
             [&](std::span<std::uint8_t> message)
             {
                 ++handed;
@@ -49,7 +49,7 @@ protected:
             origin));
         return handed;
     }
-    static Bytes AnnouncementWithCard(std::uint32_t lease = 30)
+    static Bytes AnnouncementWithCard(std::uint32_t lease = 30, std::int64_t number = 1)
     {
         const std::string text = Rabit::MakeUserData(7, true);
         Bytes data = Join({U32(static_cast<std::uint32_t>(text.size())), Bytes(text.begin(), text.end())});
@@ -57,9 +57,17 @@ protected:
         const Bytes guid = Parameter(0x0050, Guid(Sender, Rabit::Rtps::ParticipantEntity));
         const Bytes list =
             List({guid, Parameter(0x0002, Join({U32(lease), U32(0)})), Parameter(0x002c, data)});
-        return Message(Data, DataBody(1, list, Rabit::Rtps::ParticipantWriter), 0x05);
+        return Message(Data, DataBody(number, list, Rabit::Rtps::ParticipantWriter), 0x05);
+    }
+    static Bytes Goodbye(std::int64_t number)
+    {
+        const Bytes key = Parameter(0x0070, Guid(Sender, Rabit::Rtps::ParticipantEntity));
+        const Bytes status = Parameter(0x0071, {0, 0, 0, 3});
+        return Message(
+            Data, DataBody(number, Join({key, status, {1, 0, 0, 0}}), Rabit::Rtps::ParticipantWriter), 0x03);
     }
 
+    RtpsGuard::TimePoint Now{std::chrono::hours(1)};
     Bytes Handed;  // the last message that the vendor was given
     Observer Seen;
     RtpsGuard Guard{RtpsGuard::Mode::Full, std::chrono::seconds(10)};
@@ -91,6 +99,26 @@ TEST_F(PeerObserverTest, TheLeaseInACardIsNotCut)
     const Bytes announcement = AnnouncementWithCard(4 * 3600);
     EXPECT_EQ(Admit(announcement, RtpsGuard::Origin::Card), 1u);
     EXPECT_EQ(Handed, announcement);
+}
+
+// The numbers in a replay are not the participant's own.
+TEST_F(PeerObserverTest, AGoodbyeIsNewsHoweverOftenTheCardWasReplayed)
+{
+    for (const std::int64_t number : {1, 2, 3})
+    {
+        EXPECT_EQ(Admit(AnnouncementWithCard(30, number), RtpsGuard::Origin::Card), 1u);
+    }
+    EXPECT_EQ(Admit(Goodbye(2)), 1u);
+    EXPECT_EQ(Handed, Goodbye(4));
+}
+
+TEST_F(PeerObserverTest, AnAnnouncementAfterAGoodbyeIsNews)
+{
+    Admit(AnnouncementWithCard(30, 3), RtpsGuard::Origin::Card);
+    Admit(Goodbye(4));
+    Now += Rabit::Rtps::RecentGoodbyes::Overtaken;
+    EXPECT_EQ(Admit(AnnouncementWithCard(30, 1), RtpsGuard::Origin::Card), 1u);
+    EXPECT_EQ(Handed, AnnouncementWithCard(30, 5));
 }
 
 TEST_F(PeerObserverTest, ADatagramOfAnUnknownParticipantIsToldOf)
