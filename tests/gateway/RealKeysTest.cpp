@@ -4,7 +4,6 @@
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/TransportFactory.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "BackendPairs.h"
+#include "DomainLease.h"
 #include "keyed.idl.h"
 
 namespace Rabit
@@ -31,11 +31,6 @@ using testing::Pair;
 // Only keeps a broken build from hanging.
 constexpr auto Limit = 120s;
 
-int Domain()
-{
-    return 10 + ::getpid() % 200;
-}
-
 // A node that publishes the message `Contact`.
 class PublishingNode
 {
@@ -44,7 +39,7 @@ public:
     {
         GatewayConfig config;
         config.Node = "uav1";
-        config.Domain = Domain();
+        config.Domain = Conformance::OwnDomain();
         config.Interfaces = {"127.0.0.1"};
         config.Publish.push_back({.Message = "Contact", .Type = "GatewayTest::Contact"});
         _workspace.AddPublishSubscribeMessage("Contact", _contact);
@@ -80,7 +75,7 @@ public:
     {
         TransportSettings settings;
         settings.Node = name;
-        settings.Domain = Domain();
+        settings.Domain = Conformance::OwnDomain();
         settings.Interfaces = {"127.0.0.1"};
         _session = MakeTransport(transport)->Open(settings, [](const PeerEvent &) {});
         TopicQos qos;

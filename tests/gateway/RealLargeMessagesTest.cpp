@@ -4,7 +4,6 @@
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "BackendPairs.h"
+#include "DomainLease.h"
 #include "keyed.idl.h"
 
 namespace Rabit
@@ -122,7 +122,7 @@ public:
     BulkNode(const std::string &transport, const std::string &name) : _reactor(_workspace)
     {
         _config.Node = name;
-        _config.Domain = 10 + ::getpid() % 200;
+        _config.Domain = Conformance::OwnDomain();
         _config.Interfaces = {"127.0.0.1"};
         _reactor.SetHandleSignals(false);
         _transport = transport;

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 #include <rabit/gateway/links/LinkMessages.h>
 #include <rabit/transport/TransportFactory.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -10,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "DomainLease.h"
 #include "wire/LinkTopics.h"
 
 namespace Rabit
@@ -43,7 +43,7 @@ std::unique_ptr<TransportSession> Open(Transport &transport, const std::string &
     TransportSettings settings;
     settings.Node = node;
     settings.Incarnation = 1;
-    settings.Domain = 10 + ::getpid() % 200;
+    settings.Domain = Conformance::OwnDomain();
     settings.Interfaces = {"127.0.0.1"};
     settings.MaxDatagram = datagram;
     return transport.Open(settings, [](const PeerEvent &) {});

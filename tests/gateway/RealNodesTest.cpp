@@ -4,7 +4,6 @@
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "BackendPairs.h"
+#include "DomainLease.h"
 #include "gateway.idl.h"
 #include "uav.idl.h"
 
@@ -139,7 +139,7 @@ protected:
         {
             GatewayConfig config;
             config.Node = name;
-            config.Domain = 10 + ::getpid() % 200;
+            config.Domain = Conformance::OwnDomain();
             config.Interfaces = {"127.0.0.1"};
             config.Publish.push_back({.Message = "Pose", .Type = "Uav::Pose"});
             config.Subscribe.push_back({.Message = "Pose", .Type = "Uav::Pose"});

@@ -3,7 +3,6 @@
 #include <rabit/RabitReactor.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "BackendPairs.h"
+#include "DomainLease.h"
 #include "gateway.idl.h"
 #include "uav.idl.h"
 
@@ -43,7 +43,7 @@ public:
     {
         GatewayConfig config;
         config.Node = name;
-        config.Domain = 10 + ::getpid() % 200;
+        config.Domain = Conformance::OwnDomain();
         config.Interfaces = {"127.0.0.1"};
         for (std::size_t i = 0; i < States; ++i)
         {

@@ -5,7 +5,6 @@
 #include <rabit/gateway/FleetExplorer.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <functional>
@@ -14,6 +13,7 @@
 #include <thread>
 
 #include "BackendPairs.h"
+#include "DomainLease.h"
 #include "gateway.idl.h"
 #include "uav.idl.h"
 
@@ -71,7 +71,7 @@ GatewayConfig Config(const std::string &node)
 {
     GatewayConfig config;
     config.Node = node;
-    config.Domain = 10 + ::getpid() % 200;
+    config.Domain = Conformance::OwnDomain();
     config.Interfaces = {"lo"};
     return config;
 }

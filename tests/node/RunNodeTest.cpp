@@ -19,6 +19,8 @@
 #include <string>
 #include <vector>
 
+#include "DomainLease.h"
+
 namespace Rabit
 {
 namespace
@@ -88,7 +90,7 @@ protected:
 
 TEST_F(RunNodeTest, RunsTheManagersAndTheGatewayAndReturnsZero)
 {
-    EXPECT_EQ(Run({"--domain", "201"}), 0);
+    EXPECT_EQ(Run({"--domain", std::to_string(Conformance::OwnDomain())}), 0);
     EXPECT_GE(_passes, 1);
     EXPECT_THAT(_err, IsEmpty());
 }

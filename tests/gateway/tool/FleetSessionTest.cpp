@@ -4,7 +4,6 @@
 
 #include <gtest/gtest.h>
 #include <rabit/transport/TransportFactory.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <memory>
@@ -13,6 +12,7 @@
 
 #include "../BeatSamples.h"
 #include "../MessageSample.h"
+#include "DomainLease.h"
 #include "names/NodeTag.h"
 #include "wire/BeatExtensions.h"
 
@@ -27,11 +27,6 @@ using namespace std::chrono_literals;
 constexpr std::uint16_t Period = 60'000;  // ms
 constexpr double Everybody = 120.0;       // s
 
-int Domain()
-{
-    return 10 + ::getpid() % 200;
-}
-
 // A node whose beats the test writes.
 class WrittenNode
 {
@@ -41,7 +36,7 @@ public:
         TransportSettings settings;
         settings.Node = "uav1";
         settings.Incarnation = 1;
-        settings.Domain = Domain();
+        settings.Domain = Conformance::OwnDomain();
         settings.Interfaces = {"lo"};
         _session = _transport->Open(settings, [](const PeerEvent &) {});
         TopicQos qos;
@@ -70,7 +65,7 @@ class FleetSessionTest : public ::testing::TestWithParam<std::string>
 protected:
     FleetSessionTest()
     {
-        options.Node.Domain = Domain();
+        options.Node.Domain = Conformance::OwnDomain();
         options.Node.Transport = GetParam();
         options.Interfaces = {"lo"};
         options.Wait = 2.0 * Everybody;

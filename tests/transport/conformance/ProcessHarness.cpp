@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <spawn.h>
-#include <sys/file.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -22,10 +21,6 @@ namespace Rabit::Conformance
 
 namespace
 {
-
-// Above 100, the ports of a domain fall into the range from which the kernel gives ports away.
-constexpr int FirstDomain = 20;
-constexpr int LastDomain = 100;
 
 // Far longer than anything takes, also with sanitizers on a busy machine.
 constexpr std::chrono::seconds Deadline{90};
@@ -85,31 +80,6 @@ private:
 };
 
 }  // namespace
-
-DomainLease::DomainLease()
-{
-    for (int domain = FirstDomain; domain <= LastDomain; ++domain)
-    {
-        const std::string name = "/tmp/rabit-test-domain-" + std::to_string(domain);
-        const int lock = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0)
-        {
-            _domain = domain;
-            _lock = lock;
-            return;
-        }
-        if (lock >= 0)
-        {
-            close(lock);
-        }
-    }
-    throw std::runtime_error("all DDS domains for tests are taken");
-}
-
-DomainLease::~DomainLease()
-{
-    close(_lock);
-}
 
 TransportSettings ProcessHarness::SettingsFor(const std::string &node, std::uint64_t incarnation)
 {

@@ -5,26 +5,11 @@
 #include <memory>
 #include <string>
 
+#include "DomainLease.h"
 #include "TransportHarness.h"
 
 namespace Rabit::Conformance
 {
-
-// A DDS domain that no other test program on this machine has, as long as the object lives. Throws
-// std::runtime_error if all are taken.
-class DomainLease
-{
-public:
-    DomainLease();
-    ~DomainLease();
-    DomainLease(const DomainLease &) = delete;
-    DomainLease &operator=(const DomainLease &) = delete;
-    int Domain() const { return _domain; }
-
-private:
-    int _domain = 0;
-    int _lock = -1;  // file descriptor that holds a flock
-};
 
 class ProcessHarness final : public TransportHarness
 {
