@@ -1,11 +1,10 @@
 // Sessions that come and go.
-#include <malloc.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
 
 #include "ConformanceTest.h"
+#include "ProcessMemory.h"
 
 namespace Rabit::Conformance
 {
@@ -141,12 +140,6 @@ namespace
 std::ptrdiff_t EntriesOf(const char *folder)
 {
     return std::distance(std::filesystem::directory_iterator(folder), std::filesystem::directory_iterator());
-}
-
-std::size_t HeapInUse()
-{
-    const auto info = mallinfo2();
-    return info.uordblks + info.hblkhd;
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <malloc.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <fstream>
 
 namespace Rabit::Conformance
@@ -25,6 +26,14 @@ inline double MemoryInMegabytes()
     double resident = 0;
     file >> all >> resident;
     return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1 << 20);
+}
+
+// Returns the bytes that this process has allocated and not freed. Unlike its resident memory, this does not
+// depend on how the threads' allocations lie between each other.
+inline std::size_t HeapInUse()
+{
+    const auto info = ::mallinfo2();
+    return info.uordblks + info.hblkhd;
 }
 
 }  // namespace Rabit::Conformance
