@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <vector>
 
 #include "guard/DeliveryCheck.h"
 #include "guard/RtpsBytes.h"
@@ -12,6 +14,7 @@ namespace
 {
 
 using namespace RtpsBytes;
+using Rabit::FastDds::DiscoveryPortsOf;
 using Rabit::FastDds::FirstRequest;
 using Rabit::FastDds::OutgoingMessage;
 using Rabit::FastDds::ReadOutgoing;
@@ -31,6 +34,19 @@ TEST(OutgoingMessage, AnAnnouncementIsOneAndEqualOnesAreTold)
     EXPECT_EQ(ReadOutgoing(ParticipantMessage(Sender, 7410)).Announcement, first);
     EXPECT_NE(ReadOutgoing(ParticipantMessage(Sender, 7412)).Announcement, first);
     EXPECT_FALSE(ReadOutgoing(ParticipantMessage()).HasSamples);
+}
+
+TEST(OutgoingMessage, AnAnnouncementTellsThePortsOfDiscovery)
+{
+    const auto at = [](std::uint16_t id, std::uint32_t port) {
+        return Parameter(id, Join({U32(1), U32(port), Bytes(12), {127, 0, 0, 1}}));
+    };
+    const Bytes parameters = List({Parameter(0x0050, Guid(Sender, 0x000001c1)), at(0x0031, 7411),
+                                   at(0x0032, 7410), at(0x0048, 7401), at(0x0033, 7400)});
+    const Bytes announcement = Message(Data, DataBody(1, parameters, ParticipantWriter), HasData);
+    EXPECT_EQ(DiscoveryPortsOf(announcement), (std::vector<std::uint32_t>{7410, 7400}));
+    EXPECT_TRUE(DiscoveryPortsOf(Message(Data, DataBody(1), HasData)).empty());
+    EXPECT_TRUE(DiscoveryPortsOf({}).empty());
 }
 
 TEST(OutgoingMessage, AGoodbyeIsNoAnnouncement)

@@ -163,7 +163,7 @@ public:
             return true;
         }
         const std::lock_guard lock(_sending);
-        if (message.Announcement && Authentication() != nullptr)
+        if (message.Announcement)
         {
             _announcement.assign(datagram.begin(), datagram.end());
         }
@@ -239,23 +239,19 @@ public:
         }
         // This is the vendor's receive buffer, which is not reused before this returns.
         const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
+        const Receiver receiver{next, local, remote};
+        {
+            const std::lock_guard lock(_receiving);
+            _receivers.insert_or_assign(local.port, receiver);
+        }
         if (Meeting() != nullptr && IsCardMessage(datagram))
         {
-            {
-                const std::lock_guard lock(_receiving);
-                _receiver = {next, local, remote};
-            }
             if (!Meeting()->Received(datagram, HostOf(remote),
                                      _guard.IsKnownAt(SenderOf(datagram), HostOf(remote))))
             {
                 _descriptor.Chosen().OnDropped();
             }
             return;
-        }
-        if (Authentication() != nullptr)
-        {
-            const std::lock_guard lock(_receiving);
-            _receiver = {next, local, remote};
         }
         if (Keys() != nullptr)
         {
@@ -269,7 +265,7 @@ public:
                 return;
             }
             NoteAcknowledgements(admitted);
-            Deliver({next, local, remote}, admitted);
+            Deliver(receiver, admitted);
         };
         if (!_guard.Admit(datagram, HostOf(remote), std::chrono::steady_clock::now(), std::cref(handOn)))
         {
@@ -281,13 +277,13 @@ public:
         }
         if (AwaitsProtectedAnnouncements && Authentication() != nullptr)
         {
-            Introduce(datagram, {next, local, remote});
+            Introduce(datagram);
         }
     }
 
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
-    // The vendor's receiver to which the content of cards, and goodbyes, are delivered.
+    // The vendor's receiver of the datagrams that come to one of its ports.
     struct Receiver
     {
         TransportReceiverInterface *Next = nullptr;
@@ -318,16 +314,14 @@ private:
         SendCard(peer, ours);
         SendCard(std::nullopt, ours);
         auto theirs = GoodbyeOf(peer, own, number);
-        if (const Receiver receiver = LastReceiver(); receiver.Next != nullptr)
+        const Receiver receiver = DiscoveryReceiver();
+        // A vendor that waits for protected announcements heeds a goodbye only of participants of which it
+        // has had one. Otherwise it would remember a failed handshake for good.
+        if (auto announcement = _introductions.Take(peer); !announcement.empty())
         {
-            // A vendor that waits for protected announcements heeds a goodbye only of participants of which
-            // it has had one. Otherwise it would remember a failed handshake for good.
-            if (auto announcement = _introductions.Take(peer); !announcement.empty())
-            {
-                HandOnAsProtected(receiver, peer, announcement);
-            }
-            HandOnAsProtected(receiver, peer, theirs);
+            HandOnAsProtected(receiver, peer, announcement);
         }
+        HandOnAsProtected(receiver, peer, theirs);
     }
     // Hands a received datagram to the vendor.
     void Deliver(const Receiver &receiver, std::span<std::uint8_t> admitted)
@@ -342,7 +336,7 @@ private:
     }
     // Hands the announcement of a datagram's sender to the vendor once more, if the sender is authenticated.
     // The vendor has seen the datagram.
-    void Introduce(std::span<const std::uint8_t> datagram, const Receiver &receiver)
+    void Introduce(std::span<const std::uint8_t> datagram)
     {
         const GuidPrefix peer = datagram.size() < RtpsHeaderSize ? GuidPrefix{} : SenderOf(datagram);
         if (!_introductions.Has(peer))
@@ -356,7 +350,7 @@ private:
         }
         if (auto announcement = _introductions.Take(peer); !announcement.empty())
         {
-            HandOnAsProtected(receiver, peer, announcement);
+            HandOnAsProtected(DiscoveryReceiver(), peer, announcement);
         }
     }
     void HandOnAsProtected(const Receiver &receiver, const GuidPrefix &peer, std::span<std::uint8_t> message)
@@ -406,20 +400,35 @@ private:
             SendChosen(sender, datagram, false, timeout);
         }
     }
-    Receiver LastReceiver()
+    // Returns a receiver for datagrams of discovery that are made here; the vendor's receivers of samples
+    // drop these. Next is null until a datagram has come to a port of discovery.
+    Receiver DiscoveryReceiver()
     {
+        auto ports = DiscoveryPortsOf(OwnAnnouncement());
+        // The vendor does not announce the group that it listens to where samples do not go by multicast.
+        ports.push_back(_descriptor.Chosen().GroupPort);
         const std::lock_guard lock(_receiving);
-        return _receiver;
+        for (const std::uint32_t port : ports)
+        {
+            if (const auto found = _receivers.find(port); found != _receivers.end())
+            {
+                return found->second;
+            }
+        }
+        return {};
     }
     static void HandOn(const Receiver &receiver, std::span<std::uint8_t> message)
     {
-        receiver.Next->OnDataReceived(message.data(), static_cast<std::uint32_t>(message.size()),
-                                      receiver.Local, receiver.Remote);
+        if (receiver.Next != nullptr)
+        {
+            receiver.Next->OnDataReceived(message.data(), static_cast<std::uint32_t>(message.size()),
+                                          receiver.Local, receiver.Remote);
+        }
     }
     // Runs on the meeting's thread. The vendor accepts datagrams on several threads.
     void DeliverCard(const HostAddress &from, std::span<std::uint8_t> datagram)
     {
-        const Receiver receiver = LastReceiver();
+        const Receiver receiver = DiscoveryReceiver();
         const auto handOn = [&](std::span<std::uint8_t> admitted) { HandOn(receiver, admitted); };
         if (receiver.Next != nullptr && !_guard.Admit(datagram, from, std::chrono::steady_clock::now(),
                                                       std::cref(handOn), RtpsGuard::Origin::Card))
@@ -576,18 +585,18 @@ private:
 
     GuardedUdpDescriptor _descriptor;
     RtpsGuard _guard;
-    std::mutex _receiving;                  // several sockets receive at the same time
-    AcknowledgementTranslator _translator;  // guarded by _receiving
-    Receiver _receiver;                     // guarded by _receiving
-    Introductions _introductions;           // empty if the vendor does not need them
-    std::mutex _protecting;                 // for AsProtected
-    std::mutex _sending;                    // guards the members below
+    std::mutex _receiving;                         // several sockets receive at the same time
+    AcknowledgementTranslator _translator;         // guarded by _receiving
+    std::map<std::uint32_t, Receiver> _receivers;  // by port; guarded by _receiving
+    Introductions _introductions;                  // empty if the vendor does not need them
+    std::mutex _protecting;                        // for AsProtected
+    std::mutex _sending;                           // guards the members below
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;
     HardwareAddresses _addresses;
     CardRoutes<Route> _cardRoutes;
-    std::vector<std::uint8_t> _announcement;  // our last one, if Authentication() wants it
+    std::vector<std::uint8_t> _announcement;  // our last one
     RecentNumbers<rtps::Locator_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;

@@ -173,6 +173,33 @@ void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vec
     VisitSubmessages(announcement, visit);
 }
 
+std::vector<std::uint32_t> DiscoveryPortsOf(std::span<const std::uint8_t> announcement)
+{
+    std::vector<std::uint32_t> ports;
+    const auto visit = [&ports](const Part &part)
+    {
+        const auto said = part.Kind == SubmessageKind::Data ? ReadAnnouncement(part.Whole) : std::nullopt;
+        if (!said || said->Writer != ParticipantWriter || !said->Alive)
+        {
+            return;
+        }
+        const bool littleEndian = IsLittleEndianList(said->Payload);
+        VisitParameters(said->Payload,
+                        [&](const ListParameter &parameter)
+                        {
+                            if (parameter.Id == Parameters::MetatrafficUnicastLocator ||
+                                parameter.Id == Parameters::MetatrafficMulticastLocator)
+                            {
+                                RtpsReader locator(parameter.Value, littleEndian);
+                                locator.Skip(sizeof(std::uint32_t));  // the kind
+                                ports.push_back(locator.U32());
+                            }
+                        });
+    };
+    VisitSubmessages(announcement, visit);
+    return ports;
+}
+
 std::vector<Acknowledgement> ReadAcknowledgements(std::span<const std::uint8_t> datagram)
 {
     std::vector<Acknowledgement> found;

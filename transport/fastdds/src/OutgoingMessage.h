@@ -55,6 +55,9 @@ void WriteWithoutDestination(std::span<const std::uint8_t> datagram, std::vector
 // participant).
 void WriteWithoutProperties(std::span<const std::uint8_t> announcement, std::vector<std::uint8_t> &to);
 
+// The UDP ports at which a participant takes discovery data, as its announcement says.
+std::vector<std::uint32_t> DiscoveryPortsOf(std::span<const std::uint8_t> announcement);
+
 // A peer's acknowledgement to a writer of ours.
 struct Acknowledgement
 {

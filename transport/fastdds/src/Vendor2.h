@@ -173,12 +173,13 @@ public:
         return MaySendTo(remote) && ChainingTransport::transform_remote_locator(remote, result);
     }
 
-protected:
     // False: the vendor does not use that address of a peer.
     virtual bool MaySendTo(const rtps::Locator_t &remote) const = 0;
     virtual bool Send(rtps::SenderResource &sender, std::span<const std::uint8_t> datagram,
                       rtps::LocatorsIterator &begin, rtps::LocatorsIterator &end,
                       const std::chrono::steady_clock::time_point &timeout) = 0;
+
+protected:
     static bool SendOn(rtps::SenderResource &sender, std::span<const std::uint8_t> datagram,
                        rtps::LocatorsIterator &begin, rtps::LocatorsIterator &end,
                        const std::chrono::steady_clock::time_point &timeout)
