@@ -312,6 +312,8 @@ MUTATIONS = [
     Mutation("all keys are one", FASTDDS + "KeepLastHistory.cpp",
              "const rtps::InstanceHandle_t instance = change.instanceHandle;",
              "const rtps::InstanceHandle_t instance;", f"{CONFORMANCE}:*ALateReaderGetsTheLastOfEachKey*"),
+    history("a writer goes with its samples in the history", "KeepLastHistory.cpp",
+            "while (!m_changes.empty())", "while (false)"),
     history("an instance ends later than it did", "KeepLast.h", "number <= found->second.End",
             "number <= found->second.End + 1"),
     history("what is asked for is passed over", "KeepLast.h", "oldest <= number ?", "true ?"),

@@ -60,8 +60,9 @@ bool KeepLastHistory::Add(Change &change, rtps::WriteParams &params,
 void KeepLastHistory::RemoveWriter(rtps::RTPSWriter *writer)
 {
     {
-        // Version 2.9 frees the samples while they are in the history, and its timer of heartbeats runs on:
-        // it would count from a freed sample's number to the next one's for ever.
+        // Version 2.9 frees the samples while they are in the history, and its timer of heartbeats runs on
+        // (Fast DDS pull request 4076): it would count from a freed sample's number to the next one's for
+        // ever.
         const std::lock_guard lock(writer->getMutex());
         while (!m_changes.empty())
         {
