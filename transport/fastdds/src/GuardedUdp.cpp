@@ -240,11 +240,13 @@ public:
         // This is the vendor's receive buffer, which is not reused before this returns.
         const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
         const Receiver receiver{next, local, remote};
+        const bool isCard = Meeting() != nullptr && IsCardMessage(datagram);
         {
             const std::lock_guard lock(_receiving);
             _receivers.insert_or_assign(local.port, receiver);
+            _cardPort = isCard ? local.port : _cardPort;
         }
-        if (Meeting() != nullptr && IsCardMessage(datagram))
+        if (isCard)
         {
             if (!Meeting()->Received(datagram, HostOf(remote),
                                      _guard.IsKnownAt(SenderOf(datagram), HostOf(remote))))
@@ -408,6 +410,8 @@ private:
         // The vendor does not announce the group that it listens to where samples do not go by multicast.
         ports.push_back(_descriptor.Chosen().GroupPort);
         const std::lock_guard lock(_receiving);
+        // A node without multicast that lists no peers announces itself only when it has heard of one.
+        ports.push_back(_cardPort);
         for (const std::uint32_t port : ports)
         {
             if (const auto found = _receivers.find(port); found != _receivers.end())
@@ -588,6 +592,7 @@ private:
     std::mutex _receiving;                         // several sockets receive at the same time
     AcknowledgementTranslator _translator;         // guarded by _receiving
     std::map<std::uint32_t, Receiver> _receivers;  // by port; guarded by _receiving
+    std::uint32_t _cardPort = 0;                   // of the last card message; guarded by _receiving
     Introductions _introductions;                  // empty if the vendor does not need them
     std::mutex _protecting;                        // for AsProtected
     std::mutex _sending;                           // guards the members below
