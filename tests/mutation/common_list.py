@@ -37,8 +37,8 @@ def buffers(name, find, replace, file="BufferPool.cpp"):
 MUTATIONS = [
     # Memory of samples
     buffers("a small sample holds a large buffer", "SmallestBits = 7", "SmallestBits = 16", "BufferPool.h"),
-    buffers("all buffers are kept", "_kept + buffer.Capacity <= MostKept", "true"),
-    buffers("no buffer is kept", "_kept + buffer.Capacity <= MostKept", "false"),
+    buffers("all buffers are kept", "_kept[bits] < std::max(BuffersKept * buffer.Capacity, BytesKept)", "true"),
+    buffers("no buffer is kept", "_kept[bits] < std::max(BuffersKept * buffer.Capacity, BytesKept)", "false"),
     # When to join anew
     decision("a network is joined before it has lasted", "Since + SettleOf(network.Interface)", "Since"),
     decision("who comes and goes is trusted at once", "settle = std::min(2 * settle, _times.LongestSettle);", ""),

@@ -10,7 +10,9 @@ namespace Rabit
 namespace
 {
 
-constexpr std::size_t MostKept = 1u << 20;  // bytes
+// Of each capacity, so that a burst of one size leaves room for the others: these buffers, or these bytes if
+// they are more.
+constexpr std::size_t BuffersKept = 16, BytesKept = 1u << 17;
 constexpr std::align_val_t Alignment{16};
 
 }  // namespace
@@ -43,7 +45,7 @@ BufferPool::Buffer BufferPool::Acquire(std::uint32_t size)
         if (Free *const first = _free[bits])
         {
             _free[bits] = first->Next;
-            _kept -= capacity;
+            _kept[bits] -= capacity;
             return {reinterpret_cast<std::uint8_t *>(first), capacity};
         }
     }
@@ -54,12 +56,12 @@ void BufferPool::Release(Buffer buffer) noexcept
 {
     if (buffer.Capacity <= 1u << LargestBits)
     {
+        const auto bits = static_cast<std::size_t>(std::bit_width(buffer.Capacity) - 1);
         const std::lock_guard lock(_mutex);
-        if (_kept + buffer.Capacity <= MostKept)
+        if (_kept[bits] < std::max(BuffersKept * buffer.Capacity, BytesKept))
         {
-            Free *&first = _free[static_cast<std::size_t>(std::bit_width(buffer.Capacity) - 1)];
-            first = new (buffer.Data) Free{first};
-            _kept += buffer.Capacity;
+            _free[bits] = new (buffer.Data) Free{_free[bits]};
+            _kept[bits] += buffer.Capacity;
             return;
         }
     }

@@ -8,9 +8,9 @@
 namespace Rabit
 {
 
-// Memory for samples. Buffers of up to 64 kB are kept for the next ones of about that size, 1 MB at most, so
-// that samples of one datagram need no allocation in the steady state. Larger ones are freed after use.
-// Thread-safe.
+// Memory for samples. Buffers of up to 64 kB are kept for the next ones of about that size, so that samples
+// of one datagram need no allocation in the steady state: 1 MB at most of the largest ones, 3 MB in all.
+// Larger ones are freed after use. Thread-safe.
 class BufferPool
 {
 public:
@@ -40,8 +40,8 @@ private:
     };
 
     std::mutex _mutex;
-    std::array<Free *, LargestBits + 1> _free{};  // by the binary logarithm of the capacity; guarded
-    std::size_t _kept = 0;                        // bytes in them; guarded
+    std::array<Free *, LargestBits + 1> _free{};       // by the binary logarithm of the capacity; guarded
+    std::array<std::size_t, LargestBits + 1> _kept{};  // bytes in them; guarded
 };
 
 }  // namespace Rabit

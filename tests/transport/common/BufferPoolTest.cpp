@@ -5,6 +5,7 @@
 #include <malloc.h>
 
 #include <cstring>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -30,6 +31,18 @@ protected:
         {
             Pool.Release(buffer);
         }
+    }
+
+    // True if a buffer that is given back is the next one of its size.
+    bool IsKept(std::uint32_t size)
+    {
+        const BufferPool::Buffer first = Pool.Acquire(size);
+        Pool.Release(first);
+        // Would be at the place of a buffer that was freed.
+        const auto other = std::make_unique<std::uint8_t[]>(first.Capacity);
+        const BufferPool::Buffer second = Pool.Acquire(size);
+        Pool.Release(second);
+        return second.Data == first.Data;
     }
 
     BufferPool Pool;
@@ -61,12 +74,24 @@ TEST_F(BufferPoolTest, EverySizeUpToTheLargestSampleFits)
 }
 
 // Sanitizers report no bytes in use.
-TEST_F(BufferPoolTest, OneMegabyteIsKeptAtMost)
+TEST_F(BufferPoolTest, OneMegabyteOfASizeIsKeptAtMost)
 {
     Use(1, 60'000);
     const std::size_t before = mallinfo2().uordblks;
     Use(100, 60'000);
     EXPECT_LE(mallinfo2().uordblks, before + (1u << 20) + 100'000);
+}
+
+TEST_F(BufferPoolTest, ABurstOfOneSizeLeavesRoomForTheOthers)
+{
+    for (const std::uint32_t burst : {100U, 60'000U})
+    {
+        Use((2u << 20) / burst, burst);
+    }
+    for (const std::uint32_t size : {100U, 2000U, 60'000U})
+    {
+        EXPECT_TRUE(IsKept(size)) << size;
+    }
 }
 
 TEST_F(BufferPoolTest, SeveralThreadsMayUseIt)
