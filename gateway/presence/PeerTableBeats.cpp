@@ -159,7 +159,8 @@ bool PeerTable::Adopt(const Peer &elsewhere)
 
 bool PeerTable::IsEchoDue(const Peer &peer, Duration now) const
 {
-    return peer.State != NodeState::LOST && (!peer.LastEchoed || now - *peer.LastEchoed >= _echoPeriod);
+    return peer.State != NodeState::LOST &&
+           (peer.FirstEchoesLeft > 0 || now - peer.LastEchoed >= _echoPeriod);
 }
 
 bool PeerTable::IsEchoUrgent(const Peer &peer)
@@ -190,6 +191,7 @@ std::vector<Gateway::BeatEcho> PeerTable::NextEchoes(Duration now, std::size_t u
         echo.held_us = static_cast<std::uint32_t>(
             std::chrono::duration_cast<std::chrono::microseconds>(now - peer.LastBeatArrival).count());
         echoes.push_back(echo);
+        peer.FirstEchoesLeft -= peer.FirstEchoesLeft > 0 ? 1 : 0;
         peer.LastEchoed = now;
         peer.DoubtsThisNode = false;
         return true;
