@@ -284,23 +284,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         if (delivery.Writer == ParticipantWriter)
         {
-            _replies.OnGone(passage.Sender);
-            if (passage.Whence == Origin::Network)
-            {
-                // Anybody can say goodbye for participants that never were.
-                if (_peers.LastHeard(passage.Sender))
-                {
-                    _goodbyes->Note(passage.Sender, passage.Now);
-                }
-                if (_observer != nullptr)
-                {
-                    _observer->Gone(passage.Sender);
-                }
-                if (_authentication != nullptr)
-                {
-                    _authentication->SaidGoodbye(passage.Sender);
-                }
-            }
+            NoteGoodbye(passage);
         }
         return Verdict::Pass;
     }
@@ -310,9 +294,13 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return Verdict::Drop;
     }
-    if (delivery.Alive && delivery.Writer == ParticipantWriter)
+    if (delivery.Writer == ParticipantWriter)
     {
-        return JudgeParticipant(*announcement, delivery.First, passage);
+        if (delivery.Alive)
+        {
+            return JudgeParticipant(*announcement, delivery.First, passage);
+        }
+        NoteGoodbye(passage);
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
     if (_mode == Mode::Full && delivery.Alive && isEndpoint && _peers.Hears(passage.Sender, passage.Now) &&
@@ -322,6 +310,28 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         return Verdict::Refuse;
     }
     return Verdict::Pass;
+}
+
+void RtpsGuard::NoteGoodbye(const Passage &passage)
+{
+    _replies.OnGone(passage.Sender);
+    if (passage.Whence != Origin::Network)
+    {
+        return;
+    }
+    // Anybody can say goodbye for participants that never were.
+    if (_peers.LastHeard(passage.Sender))
+    {
+        _goodbyes->Note(passage.Sender, passage.Now);
+    }
+    if (_observer != nullptr)
+    {
+        _observer->Gone(passage.Sender);
+    }
+    if (_authentication != nullptr)
+    {
+        _authentication->SaidGoodbye(passage.Sender);
+    }
 }
 
 RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement, std::int64_t number,

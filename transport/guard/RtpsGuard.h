@@ -140,6 +140,7 @@ private:
     bool IsForOthers(const Passage &passage) const;
     // True if the observer handles this instead of the network.
     bool IsReplayed(const Delivery &delivery, const Passage &passage) const;
+    void NoteGoodbye(const Passage &passage);
     Verdict JudgeParticipant(const Announcement &announcement, std::int64_t number, const Passage &passage);
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);

@@ -112,6 +112,18 @@ TEST_F(PeerObserverTest, AGoodbyeIsNewsHoweverOftenTheCardWasReplayed)
     EXPECT_EQ(Handed, Goodbye(4));
 }
 
+// The vendors go by the status alone.
+TEST_F(PeerObserverTest, AGoodbyeThatCarriesTheWholeAnnouncementIsToldOf)
+{
+    Admit(AnnouncementWithCard(), RtpsGuard::Origin::Card);
+    const Bytes status = Join({Parameter(0x0071, {0, 0, 0, 3}), {1, 0, 0, 0}});
+    const Bytes list = List({Parameter(0x0050, Guid(Sender, Rabit::Rtps::ParticipantEntity)),
+                             Parameter(0x0002, Join({U32(30), U32(0)}))});
+    const Bytes goodbye = DataBody(1, Join({status, list}), Rabit::Rtps::ParticipantWriter);
+    EXPECT_EQ(Admit(Message(Data, goodbye, 0x07)), 1u);
+    EXPECT_EQ(Seen.Left, std::vector<GuidPrefix>{Sender});
+}
+
 TEST_F(PeerObserverTest, AnAnnouncementAfterAGoodbyeIsNews)
 {
     Admit(AnnouncementWithCard(30, 3), RtpsGuard::Origin::Card);
