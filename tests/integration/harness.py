@@ -2,11 +2,13 @@
 come, and a network of the test's own where the machine allows it."""
 
 import bisect
+import functools
 import os
 import pathlib
 import platform
 import re
 import resource
+import socket
 import subprocess
 import sys
 import threading
@@ -19,6 +21,7 @@ sys.path.insert(0, str(ROOT / "gateway" / "lab"))
 from rabit_lab.processes import Pauses, Process, Processes, die_with_parent, full_pipe, until  # noqa: E402,F401
 
 IN_NAMESPACE = "RABIT_TEST_IN_NAMESPACE"
+LEASES = []  # of domains; they end with this program
 
 
 def can_make_namespaces():
@@ -49,10 +52,23 @@ def enter_namespace():
                           "sh", sys.executable, *sys.argv])
 
 
+@functools.cache
 def domain():
-    """A DDS domain: the first one in a namespace, one that depends on the process elsewhere. The ports of domains from 100 on are
-    among those that the kernel gives to any socket."""
-    return 0 if os.environ.get(IN_NAMESPACE) == "yes" else 20 + os.getpid() % 80
+    """A DDS domain: the first one in a namespace; elsewhere one that no other test has until this program ends, as
+    tests/transport/conformance/DomainLease. The ports of domains from 100 on are among those that the kernel gives to any
+    socket."""
+    if os.environ.get(IN_NAMESPACE) == "yes":
+        return 0
+    for number in range(20, 100):
+        lease = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        try:
+            lease.bind(f"\0rabit-test-domain-{number}")
+        except OSError:
+            lease.close()
+            continue
+        LEASES.append(lease)
+        return number
+    raise RuntimeError("all DDS domains for tests are taken")
 
 
 def reason(error):

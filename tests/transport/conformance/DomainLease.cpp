@@ -1,9 +1,11 @@
 #include "DomainLease.h"
 
-#include <fcntl.h>
-#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -15,7 +17,18 @@ namespace
 
 // Above 100, the ports of a domain fall into the range from which the kernel gives ports away.
 constexpr int FirstDomain = 20;
-constexpr int LastDomain = 100;
+constexpr int LastDomain = 99;
+
+// Binds a socket to a name of the abstract namespace of Unix sockets, which belongs to the network namespace,
+// as domains do, and is free again when its process ends. tests/integration/harness.py takes the same names.
+bool Bind(int socket, const std::string &name)
+{
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::copy(name.begin(), name.end(), address.sun_path + 1);
+    const auto size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + name.size());
+    return bind(socket, reinterpret_cast<const sockaddr *>(&address), size) == 0;
+}
 
 }  // namespace
 
@@ -23,17 +36,16 @@ DomainLease::DomainLease()
 {
     for (int domain = FirstDomain; domain <= LastDomain; ++domain)
     {
-        const std::string name = "/tmp/rabit-test-domain-" + std::to_string(domain);
-        const int lock = open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-        if (lock >= 0 && flock(lock, LOCK_EX | LOCK_NB) == 0)
+        const int lease = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+        if (lease >= 0 && Bind(lease, "rabit-test-domain-" + std::to_string(domain)))
         {
             _domain = domain;
-            _lock = lock;
+            _lease = lease;
             return;
         }
-        if (lock >= 0)
+        if (lease >= 0)
         {
-            close(lock);
+            close(lease);
         }
     }
     throw std::runtime_error("all DDS domains for tests are taken");
@@ -41,7 +53,7 @@ DomainLease::DomainLease()
 
 DomainLease::~DomainLease()
 {
-    close(_lock);
+    close(_lease);
 }
 
 }  // namespace Rabit::Conformance

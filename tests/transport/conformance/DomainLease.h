@@ -4,7 +4,7 @@
 namespace Rabit::Conformance
 {
 
-// A DDS domain that no other test program on this machine has, as long as the object lives. Throws
+// A DDS domain that no other test program in this network namespace has, as long as the object lives. Throws
 // std::runtime_error if all are taken.
 class DomainLease
 {
@@ -17,10 +17,10 @@ public:
 
 private:
     int _domain = 0;
-    int _lock = -1;  // file descriptor that holds a flock
+    int _lease = -1;  // a socket
 };
 
-// The domain of this test program, which it has until it ends. As DomainLease.
+// The domain of this test program, which it has until it ends. Throws as DomainLease does.
 inline int OwnDomain()
 {
     static const DomainLease own;

@@ -90,7 +90,8 @@ TEST_P(Conformance, InstancesEndWithTheirLastWriter)
     EXPECT_THAT(end.Bytes, IsEmpty());
 }
 
-// Each end is a datagram with a stamp and a number of its own, so that some byte in it has every value.
+// Each end is a datagram with a stamp of its own. Of 640, one has each value of a certain byte in 92 of 100
+// runs.
 TEST_P(Conformance, TheEndOfEachOfManyWritersIsHeard)
 {
     constexpr int Rounds = 40;
