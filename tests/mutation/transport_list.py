@@ -30,6 +30,8 @@ MUTATIONS = [
           "return datagram.size();"),
     guard("what looks like statistics is cut off", "RtpsMessage.cpp", "bool hasStatistics = false;",
           "bool hasStatistics = EndsLikeStatistics(datagram);"),
+    Mutation("the vendor writes its statistics into a sample", FASTDDS + "GuardedUdp.cpp",
+             "if (hasStatistics && EndsLikeStatistics(datagram))", "if (!hasStatistics)", "fastdds_paces_test:GuardedUdpTest*"),
     guard("blanking changes the length", "RtpsMessage.cpp",
           "Write(submessage.Whole.subspan(2, 2), submessage.Body().size(), submessage.LittleEndian);",
           "Write(submessage.Whole.subspan(2, 2), 0, submessage.LittleEndian);"),

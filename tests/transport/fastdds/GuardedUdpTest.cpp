@@ -1,7 +1,11 @@
 // `GuardedUdp` between sockets and receivers of the vendor's that are not there.
 #include "GuardedUdp.h"
 
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -58,6 +62,41 @@ private:
     std::vector<Bytes> _datagrams;
 };
 
+// A socket of this machine.
+class Receiving
+{
+public:
+    Receiving()
+    {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        socklen_t size = sizeof(address);
+        auto *const any = reinterpret_cast<sockaddr *>(&address);
+        const timeval limit{.tv_sec = Limit.count(), .tv_usec = 0};
+        EXPECT_EQ(setsockopt(_socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit)), 0);
+        EXPECT_EQ(bind(_socket, any, size), 0);
+        EXPECT_EQ(getsockname(_socket, any, &size), 0);
+        _port = ntohs(address.sin_port);
+    }
+    ~Receiving() { close(_socket); }
+    Receiving(const Receiving &) = delete;
+    Receiving &operator=(const Receiving &) = delete;
+    std::uint32_t Port() const { return _port; }
+    // The next datagram; empty if none comes.
+    Bytes Next()
+    {
+        Bytes datagram(65536);
+        const auto size = recv(_socket, datagram.data(), datagram.size(), 0);
+        datagram.resize(size < 0 ? 0 : static_cast<std::size_t>(size));
+        return datagram;
+    }
+
+private:
+    const int _socket = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    std::uint32_t _port = 0;
+};
+
 rtps::Locator_t At(std::uint32_t port)
 {
     rtps::Locator_t locator;
@@ -82,6 +121,15 @@ protected:
         // Sent to nobody: the transport learns the own name and ports.
         Own->Send(*_sockets.front(), ParticipantMessage(Other, DiscoveryPort), _nobody, _nobody,
                   std::chrono::steady_clock::now() + Limit);
+    }
+    void Send(const Bytes &datagram, std::uint32_t port)
+    {
+        _udp->OpenOutputChannel(_sockets, At(port));
+        rtps::LocatorList list;
+        list.push_back(At(port));
+        rtps::Locators begin(list.begin());
+        rtps::Locators end(list.end());
+        Own->Send(*_sockets.front(), datagram, begin, end, std::chrono::steady_clock::now() + Limit);
     }
     void Receive(Port &to, std::uint32_t port, Bytes datagram)
     {
@@ -125,6 +173,19 @@ TEST_F(GuardedUdpTest, AGoodbyeThatIsMadeHereGoesWhereTheVendorTakesDiscovery)
     Receive(Samples, SamplesPort, Message(Data, DataBody(1), 5));
     EXPECT_TRUE(Discovery.WaitFor(Rabit::Rtps::GoodbyeOf(Sender, ParticipantMessage(Other), 2)));
     EXPECT_EQ(Samples.Count(), 0u);
+}
+
+// The vendor's socket writes its statistics into the end of what looks like them.
+TEST_F(GuardedUdpTest, ASampleThatEndsLikeStatisticsArrivesAsItWasWritten)
+{
+    constexpr std::size_t statisticsSize = 60;
+    Bytes sample = Message(Data, DataBody(1, Bytes(100)), 5);
+    sample[sample.size() - statisticsSize] = Statistics;
+    Receiving socket;
+    Send(Join({sample, Submessage(Statistics, Bytes(statisticsSize - 4))}), socket.Port());
+    const Bytes received = socket.Next();
+    ASSERT_GE(received.size(), sample.size());
+    EXPECT_TRUE(std::equal(sample.begin(), sample.end(), received.begin()));
 }
 
 TEST_F(GuardedUdpTest, TheGroupThatIsNotAnnouncedIsForDiscovery)

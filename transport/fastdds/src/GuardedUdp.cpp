@@ -155,6 +155,7 @@ public:
     {
         rtps::SenderResource *const sender = &to;
         std::span<const std::uint8_t> datagram = whole.first(SizeWithoutStatistics(whole));
+        const bool hasStatistics = datagram.size() < whole.size();
         _guard.Sending(datagram);
         OutgoingMessage message = ReadOutgoing(datagram);
         message.HasSamples = message.HasSamples || SendingSamples::Now();
@@ -219,7 +220,7 @@ public:
             WriteWithoutDestination(datagram, _shortened);
             datagram = _shortened;
         }
-        if (EndsLikeStatistics(datagram) && datagram.size() < whole.size())
+        if (hasStatistics && EndsLikeStatistics(datagram))
         {
             // The socket would write its statistics into this end, so the message keeps those that it has.
             std::vector<std::uint8_t> kept(datagram.begin(), datagram.end());
@@ -240,16 +241,20 @@ public:
         // This is the vendor's receive buffer, which is not reused before this returns.
         const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
         const Receiver receiver{next, local, remote};
-        const bool isCard = Meeting() != nullptr && IsCardMessage(datagram);
+        if (Meeting() != nullptr || Authentication() != nullptr)
         {
             const std::lock_guard lock(_receiving);
             _receivers.insert_or_assign(local.port, receiver);
-            _cardPort = isCard ? local.port : _cardPort;
         }
-        if (isCard)
+        if (Meeting() != nullptr && IsCardMessage(datagram))
         {
-            if (!Meeting()->Received(datagram, HostOf(remote),
-                                     _guard.IsKnownAt(SenderOf(datagram), HostOf(remote))))
+            if (Meeting()->Received(datagram, HostOf(remote),
+                                    _guard.IsKnownAt(SenderOf(datagram), HostOf(remote))))
+            {
+                const std::lock_guard lock(_receiving);
+                _cardPort = local.port;
+            }
+            else
             {
                 _descriptor.Chosen().OnDropped();
             }
@@ -592,7 +597,7 @@ private:
     std::mutex _receiving;                         // several sockets receive at the same time
     AcknowledgementTranslator _translator;         // guarded by _receiving
     std::map<std::uint32_t, Receiver> _receivers;  // by port; guarded by _receiving
-    std::uint32_t _cardPort = 0;                   // of the last card message; guarded by _receiving
+    std::uint32_t _cardPort = 0;                   // of the last sound card message; guarded by _receiving
     Introductions _introductions;                  // empty if the vendor does not need them
     std::mutex _protecting;                        // for AsProtected
     std::mutex _sending;                           // guards the members below

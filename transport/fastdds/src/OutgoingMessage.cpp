@@ -191,8 +191,11 @@ std::vector<std::uint32_t> DiscoveryPortsOf(std::span<const std::uint8_t> announ
                                 parameter.Id == Parameters::MetatrafficMulticastLocator)
                             {
                                 RtpsReader locator(parameter.Value, littleEndian);
-                                locator.Skip(sizeof(std::uint32_t));  // the kind
-                                ports.push_back(locator.U32());
+                                constexpr std::uint32_t udpV4 = 1;  // RTPS 2.3, 9.3.2
+                                if (locator.U32() == udpV4)
+                                {
+                                    ports.push_back(locator.U32());
+                                }
                             }
                         });
     };
