@@ -140,7 +140,7 @@ void PeerTable::BeginLife(Peer &peer, const HeardBeat &heard)
     peer.Clock = PeerClock();
     peer.Beats = BeatCount();
     peer.LastBeatSource = Duration(-1);
-    peer.FirstEchoesLeft = FirstEchoes;
+    peer.FirstEchoesLeft = peer.IsTool ? EchoesToTool : 1;
     peer.DoubtsThisNode = false;
     peer.States.clear();
     // Of two nodes with this name, the one with the higher incarnation is the peer: the earlier one is the

@@ -39,12 +39,12 @@ public:
     static constexpr Duration ShortestPeriod = std::chrono::milliseconds(100);
     static constexpr Duration LongestPeriod = std::chrono::seconds(60);
     // A node's beat is echoed once in EchoPeriod, or with every EchoEachBeats-th beat of ours where that is
-    // more seldom. A newcomer is echoed FirstEchoes times before that, since it may not hear this node yet.
-    // If this node's clock stood still, a peer takes its beats for old ones; that peer's beat is echoed with
-    // the next beat.
+    // more seldom. The round trip to a newcomer is measured at once. A tool is echoed EchoesToTool times at
+    // first, since it may not hear this node yet and does not stay for EchoPeriod. If this node's clock stood
+    // still, a peer takes its beats for old ones; that peer's beat is echoed with the next beat.
     static constexpr Duration EchoPeriod = std::chrono::seconds(4);
     static constexpr int EchoEachBeats = 8;
-    static constexpr int FirstEchoes = 3;
+    static constexpr int EchoesToTool = 3;
     // Problems that a node has not told again for this time are forgotten (BeatContents::ProblemPeriod).
     static constexpr Duration ProblemMemory = std::chrono::seconds(60);
     // Least time between two announcements that are accepted in one incarnation.
@@ -100,7 +100,7 @@ public:
         // The contents of the next echo to it.
         Duration LastBeatSource{0};
         Duration LastBeatArrival{0};
-        int FirstEchoesLeft = FirstEchoes;
+        int FirstEchoesLeft = 1;
         Duration LastEchoed{0};
         bool DoubtsThisNode = false;  // it needs an echo to believe that this node's beats are new
         // The last beat of a lower incarnation. A beat of yet another incarnation replaces it once it is old.

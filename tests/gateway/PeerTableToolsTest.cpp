@@ -82,6 +82,17 @@ TEST_F(PeerTableToolsTest, AToolsBeatsGoBackToItSoThatItMayMeasureTheRoundTrip)
     EXPECT_EQ(table.NextEchoes(1s, 8, 8).front().node, table.Find("tool")->Tag);
 }
 
+// It may not hear the first of them yet.
+TEST_F(PeerTableToolsTest, AToolIsEchoedThreeTimesAtFirst)
+{
+    HearTool("tool", 1s);
+    for (int i = 0; i < 3; ++i)
+    {
+        EXPECT_EQ(table.NextEchoes(1s, 8, 8).size(), 1u);
+    }
+    EXPECT_EQ(table.EchoesDue(1s, 8), 0u);
+}
+
 TEST_F(PeerTableToolsTest, AToolThatLeavesIsForgottenAtOnce)
 {
     HearTool("tool", 1s);
