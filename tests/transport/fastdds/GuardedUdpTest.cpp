@@ -24,6 +24,8 @@ namespace
 
 using namespace RtpsBytes;
 using namespace Rabit::FastDds;
+// Version 2 has a second name for it, beside which clang takes neither in `rtps`.
+using eprosima::fastdds::rtps::Locators;
 using Rabit::DiscoveryTurns;
 using Rabit::Rtps::AuthenticationThread;
 using Rabit::Rtps::RtpsGuard;
@@ -127,8 +129,8 @@ protected:
         _udp->OpenOutputChannel(_sockets, At(port));
         rtps::LocatorList list;
         list.push_back(At(port));
-        rtps::Locators begin(list.begin());
-        rtps::Locators end(list.end());
+        Locators begin(list.begin());
+        Locators end(list.end());
         Own->Send(*_sockets.front(), datagram, begin, end, std::chrono::steady_clock::now() + Limit);
     }
     void Receive(Port &to, std::uint32_t port, Bytes datagram)
@@ -158,7 +160,7 @@ private:
     const std::unique_ptr<rtps::TransportInterface> _udp{_udpDescriptor->create_transport()};
     rtps::SendResourceList _sockets;
     rtps::LocatorList _noLocators;
-    rtps::Locators _nobody{_noLocators.begin()};
+    Locators _nobody{_noLocators.begin()};
     const GuardedUdpDescriptor _descriptor{_udpDescriptor, Secured()};
 
 protected:
