@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "guard/RtpsBytes.h"
+#include "guard/RtpsMessage.h"
 #include "rtps/DiscoverySubmessages.h"
 
 namespace
@@ -29,6 +30,8 @@ using eprosima::fastdds::rtps::Locators;
 using Rabit::DiscoveryTurns;
 using Rabit::Rtps::AuthenticationThread;
 using Rabit::Rtps::RtpsGuard;
+using Rabit::Rtps::StatisticsSize;
+using Rabit::Rtps::SubmessageHeaderSize;
 
 constexpr std::uint32_t GroupPort = 7400;
 constexpr std::uint32_t DiscoveryPort = 7410;
@@ -180,11 +183,10 @@ TEST_F(GuardedUdpTest, AGoodbyeThatIsMadeHereGoesWhereTheVendorTakesDiscovery)
 // The vendor's socket writes its statistics into the end of what looks like them.
 TEST_F(GuardedUdpTest, ASampleThatEndsLikeStatisticsArrivesAsItWasWritten)
 {
-    constexpr std::size_t statisticsSize = 60;
     Bytes sample = Message(Data, DataBody(1, Bytes(100)), 5);
-    sample[sample.size() - statisticsSize] = Statistics;
+    sample[sample.size() - StatisticsSize] = Statistics;
     Receiving socket;
-    Send(Join({sample, Submessage(Statistics, Bytes(statisticsSize - 4))}), socket.Port());
+    Send(Join({sample, Submessage(Statistics, Bytes(StatisticsSize - SubmessageHeaderSize))}), socket.Port());
     const Bytes received = socket.Next();
     ASSERT_GE(received.size(), sample.size());
     EXPECT_TRUE(std::equal(sample.begin(), sample.end(), received.begin()));

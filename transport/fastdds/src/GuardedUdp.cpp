@@ -223,10 +223,15 @@ public:
         if (hasStatistics && EndsLikeStatistics(datagram))
         {
             // The socket would write its statistics into this end, so the message keeps those that it has.
-            std::vector<std::uint8_t> kept(datagram.begin(), datagram.end());
-            Append(kept, whole.last(StatisticsSize));
-            _shortened = std::move(kept);
-            datagram = _shortened;
+            if (datagram.data() == whole.data())
+            {
+                datagram = whole;
+            }
+            else
+            {
+                Append(_shortened, whole.last(StatisticsSize));
+                datagram = _shortened;
+            }
         }
         return Hold(sender, datagram) || SendChosen(sender, datagram, message.HasSamples, timeout);
     }
