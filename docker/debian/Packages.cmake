@@ -32,9 +32,9 @@ set(package_version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 # Dependencies of headers and static libraries, which dpkg-shlibdeps does not find.
 set(dev_needs "rabit-tools (= ${package_version})" libboost-dev libfastcdr-dev libyaml-cpp-dev libzstd-dev zlib1g-dev
     libssl-dev libtinyxml2-dev nlohmann-json3-dev cyclonedds-dev)
-if(RABIT_WITH_FASTDDS)
-  list(APPEND dev_needs lib${RABIT_FASTDDS}-dev)
-endif()
+get_property(backends GLOBAL PROPERTY RABIT_BACKENDS_DEBIAN)
+list(APPEND dev_needs ${backends})
+list(REMOVE_DUPLICATES dev_needs)
 list(JOIN dev_needs ", " CPACK_DEBIAN_DEV_PACKAGE_DEPENDS)
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME librabit-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)

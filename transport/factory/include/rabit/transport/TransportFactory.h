@@ -17,8 +17,8 @@ namespace Rabit
 // out. The simulated transport is not among them: it has no network of its own.
 std::unique_ptr<Transport> MakeTransport(const std::string &name);
 
-// The names that MakeTransport knows, in alphabetical order; depends on the options RABIT_WITH_FASTDDS and
-// RABIT_WITH_CYCLONEDDS of the build.
+// The names that MakeTransport knows, in alphabetical order; the build's options RABIT_WITH_<NAME> leave some
+// out.
 std::vector<std::string> AvailableTransports();
 
 // All names of AvailableTransports, and those that other builds may have.
