@@ -190,8 +190,7 @@ FleetKeys::Request FleetKeys::RequestOf(const std::string &node) const
 {
     CheckNodeName(node);
     const NodeKeys keys(FolderOf(node), PrivateKeyPlace::HereOrOnNode);
-    Request request{
-        .Node = node, .Transport = HasSmallGuid(keys.Subject()) ? "cyclonedds" : "fastdds", .Access = {}};
+    Request request{.Node = node, .SmallGuid = HasSmallGuid(keys.Subject()), .Access = {}};
     for (const Permissions::Rule &rule : keys.Permissions().Rules)
     {
         const bool isPlain = rule.Allows && rule.Domains.size() == 1 &&
@@ -290,8 +289,7 @@ unsigned FleetKeys::NextNumber(const Request &request) const
     {
         subject.Number = std::max(subject.Number, SubjectOf(*CertificateIn(file)).Number + 1);
     }
-    while (subject.Number <= SubjectName::LargestNumber &&
-           HasSmallGuid(subject) != WantsSmallGuid(request.Transport))
+    while (subject.Number <= SubjectName::LargestNumber && HasSmallGuid(subject) != request.SmallGuid)
     {
         ++subject.Number;
     }

@@ -20,11 +20,11 @@ namespace Rabit::Keys
 class FleetKeys
 {
 public:
-    // The access that a node needs, and the transport as a configuration names it.
+    // The access that a node needs, and the half of all GUIDs that fits its transport (WantsSmallGuid).
     struct Request
     {
         std::string Node;
-        std::string Transport;
+        bool SmallGuid = false;
         Keys::Access Access;
     };
     struct Period

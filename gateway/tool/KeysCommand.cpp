@@ -16,6 +16,7 @@
 #include "keys/KeysError.h"
 #include "keys/Passphrase.h"
 #include "keys/SigningRequest.h"
+#include "keys/SubjectName.h"
 #include "manager/NodeSecurity.h"
 
 namespace Rabit::Tool
@@ -53,7 +54,8 @@ Keys::FleetKeys::Period PeriodOf(const Options &options)
 
 Keys::FleetKeys::Request RequestFrom(const GatewayConfig &config)
 {
-    return {.Node = config.Node, .Transport = config.Transport, .Access = AccessOf(config)};
+    return {
+        .Node = config.Node, .SmallGuid = Keys::WantsSmallGuid(config.Transport), .Access = AccessOf(config)};
 }
 
 Keys::FleetKeys::Request RequestOf(const Options &options, const Keys::FleetKeys &fleet,
@@ -236,7 +238,7 @@ int Renew(const Options &options)
             options.Config.empty() ? fleet.RequestOf(node) : RequestOf(options, fleet, node);
         if (!options.Transport.empty())
         {
-            access.Transport = options.Transport;
+            access.SmallGuid = Keys::WantsSmallGuid(options.Transport);
         }
         fleet.Renew(access, PeriodOf(options), request);
         std::optional<std::size_t> revoked;

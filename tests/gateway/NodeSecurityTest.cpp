@@ -61,7 +61,7 @@ protected:
     {
         Keys::FleetKeys::Init(Root + "/keys", "blue", {now - 1000 * Day, 5000});
         Keys::FleetKeys(Root + "/keys")
-            .Add({.Node = "uav1", .Transport = "fastdds", .Access = AccessOf(Config)}, {now, 100});
+            .Add({.Node = "uav1", .SmallGuid = false, .Access = AccessOf(Config)}, {now, 100});
     }
     std::string WhyNot(const std::string &transport = "fastdds") const
     {

@@ -81,7 +81,7 @@ TEST_F(KeysCheckTest, ARangeOfDomainsIsTooMuch)
 TEST_F(KeysCheckTest, AToolMayReadEverything)
 {
     FleetKeys(Place()).Add(
-        {.Node = "laptop", .Transport = "fastdds", .Access = {7, {{"rabit/Beat", {""}}}, {{"*", {"", "*"}}}}},
+        {.Node = "laptop", .SmallGuid = false, .Access = {7, {{"rabit/Beat", {""}}}, {{"*", {"", "*"}}}}},
         {TestNow, 10});
     EXPECT_THAT(Texts(WhatIsTooMuch(NodeKeys(FolderOf("laptop")))), IsEmpty());
 }

@@ -42,7 +42,7 @@ protected:
     static FleetKeys::Request RequestFor(const std::string &node, const std::string &transport = "fastdds")
     {
         return {.Node = node,
-                .Transport = transport,
+                .SmallGuid = WantsSmallGuid(transport),
                 .Access = {.Domain = 7,
                            .Publish = {{"rabit/Link", {""}}, {"Pose", {"", node}}},
                            .Subscribe = {{"rabit/Link", {""}}, {"Pose", {"uav*"}}}}};

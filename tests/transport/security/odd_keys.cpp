@@ -15,6 +15,7 @@
 #include "keys/FleetKeys.h"
 #include "keys/KeyFiles.h"
 #include "keys/SignedDocument.h"
+#include "keys/SubjectName.h"
 
 namespace
 {
@@ -31,7 +32,7 @@ void Add(const std::vector<std::string> &words)
                         .Publish = {{words.size() > 8 ? words[8] : "State", {"", partition}}},
                         .Subscribe = {{"State", {"*"}}}};
     FleetKeys(words.at(1))
-        .Add({.Node = node, .Transport = words.at(3), .Access = access},
+        .Add({.Node = node, .SmallGuid = WantsSmallGuid(words.at(3)), .Access = access},
              {.Now = std::time(nullptr) + static_cast<std::time_t>(std::stod(words.at(5)) * Day),
               .Days = std::stoi(words.at(6))});
 }
