@@ -11,12 +11,24 @@ namespace
 constexpr std::size_t Presence = static_cast<std::size_t>(TrafficClass::Presence);
 constexpr std::size_t First = static_cast<std::size_t>(TrafficClass::Command);
 
+// Credit of each class in each round, bytes.
+constexpr auto Quantum = []
+{
+    std::array<std::int64_t, TrafficClassCount> quantum{};
+    std::transform(TrafficClasses.begin(), TrafficClasses.end(), quantum.begin(),
+                   [](const TrafficClassInfo &traffic)
+                   { return traffic.Share * ClassShares::BytesPerShare; });
+    return quantum;
+}();
+
 bool AnyButPresence(const ClassShares::Waiting &waiting)
 {
     return std::find(waiting.begin() + First, waiting.end(), true) != waiting.end();
 }
 
 }  // namespace
+
+ClassShares::ClassShares() : _credit(Quantum) {}
 
 void ClassShares::SetPresenceBurst(std::int64_t bytes)
 {

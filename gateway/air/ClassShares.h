@@ -5,30 +5,17 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string>
-#include <vector>
 
 namespace Rabit
 {
-
-inline constexpr std::size_t TrafficClassCount = 5;
-
-// The words that a configuration may use, in the order of the classes: all but `presence`.
-inline const std::vector<std::string> TrafficClassWords = {"command", "state", "telemetry", "bulk"};
-
-// The class of the word at that index.
-inline TrafficClass ChosenClass(std::size_t index)
-{
-    return static_cast<TrafficClass>(index + 1);
-}
 
 // Chooses the class that sends next, of those that have something to send.
 //
 // Command to Bulk: deficit round robin (Shreedhar and Varghese 1995), with two differences. Within a round
 // the most important class goes first as long as it has credit, so that a command waits for a datagram under
 // way and not for a round. And a class may overdraw its credit by a datagram and pays it back in the next
-// rounds, so that rounds may be shorter than datagrams. Shares, where all have something to send: 32 : 8 : 3
-// : 2. The share of an idle class goes to the others; it keeps the credit of one round at most.
+// rounds, so that rounds may be shorter than datagrams. Shares, where all have something to send, are those
+// of TrafficClasses. The share of an idle class goes to the others; it keeps the credit of one round at most.
 //
 // Presence: goes before all others as long as it has credit. It earns a third of the bytes that others send,
 // so its share is a quarter at most. Bytes that it sends while no other class waits are free.
@@ -37,10 +24,13 @@ class ClassShares
 public:
     using Waiting = std::array<bool, TrafficClassCount>;  // by class
 
-    // Credit in each round, bytes. A round is short, since otherwise telemetry would wait, for 150 bytes of
-    // its own, until 1600 bytes of commands have passed: seconds with a small budget.
-    static constexpr std::array<std::int64_t, TrafficClassCount> Quantum = {0, 256, 64, 24, 16};
+    // Credit in each round, bytes, for each unit of a share. A round is short, since otherwise telemetry
+    // would wait, for 150 bytes of its own, until 1600 bytes of commands have passed: seconds with a small
+    // budget.
+    static constexpr std::int64_t BytesPerShare = 8;
     static constexpr std::int64_t PresenceEarns = 3;  // one byte for this many of the others
+
+    ClassShares();
 
     // Sets the bytes that presence may send ahead of its credit after a pause.
     void SetPresenceBurst(std::int64_t bytes);
@@ -54,7 +44,7 @@ public:
 private:
     void BeginRounds(const Waiting &waiting);
 
-    std::array<std::int64_t, TrafficClassCount> _credit = Quantum;
+    std::array<std::int64_t, TrafficClassCount> _credit;
     std::int64_t _presenceBurst = 1400;
     std::int64_t _presence = 1400;
 };

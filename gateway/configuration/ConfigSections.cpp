@@ -3,12 +3,27 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "names/QosProfileWords.h"
+#include "names/TrafficClassWords.h"
+
 namespace Rabit
 {
 namespace
 {
 
 constexpr bool RequiredKey = true;
+
+// "`command`, `state` or `bulk`"
+std::string OneOf(const std::vector<std::string> &words)
+{
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i)
+    {
+        const bool isLast = i + 1 == words.size();
+        text += (i == 0 ? "`" : isLast ? " or `" : ", `") + words[i] + "`";
+    }
+    return text;
+}
 
 ConfigSection WholeFileSection()
 {
@@ -23,8 +38,8 @@ ConfigSection WholeFileSection()
           "workspace, for instance one for a radio and one for a LAN, need two names."},
          {"domain", "0 to 232; 0 to 230 with keys", "0", "7",
           "DDS domain. Nodes of different domains do not hear each other."},
-         {"transport", "`fastdds` or `cyclonedds`", "fastdds", "cyclonedds",
-          "DDS implementation of this node. A fleet may mix them."},
+         {"transport", "a DDS implementation of this build, as `fastdds` or `cyclonedds`", "fastdds",
+          "cyclonedds", "DDS implementation of this node. A fleet may mix them."},
          {"interfaces", "list of names or addresses", "", "[wlan0]",
           "Network interfaces to use. The node waits for them. Default: all."},
          {"peers", "list of addresses", "", "[10.0.0.2]",
@@ -111,7 +126,8 @@ ConfigSection PathsSection()
         "a `paths` entry",
         "One of several networks to the same nodes, such as a mesh radio and a modem; the best comes first.",
         {{"name", "1 to 64 of `A-Z a-z 0-9 _ . -`", "", "mesh", "Name of the path.", RequiredKey},
-         {"transport", "`fastdds` or `cyclonedds`", "", "cyclonedds", "Default: that of the gateway."},
+         {"transport", "a DDS implementation of this build, as `fastdds` or `cyclonedds`", "", "cyclonedds",
+          "Default: that of the gateway."},
          {"interfaces", "list of names or addresses", "", "[wlan0]", "Network interfaces. Default: all."},
          {"peers", "list of addresses", "", "[10.0.0.2]", "Addresses of other nodes. Default: none."},
          {"multicast", "`on` or `off`", "on", "off", "`off`: nodes are found by `peers` alone."},
@@ -184,8 +200,7 @@ ConfigSection BlackBoxSection()
 
 ConfigKey ClassKey(const std::string &byDefault)
 {
-    return {"class", "`command`, `state`, `telemetry` or `bulk`", byDefault, "bulk",
-            "Priority where the radio is full."};
+    return {"class", OneOf(TrafficClassWords()), byDefault, "bulk", "Priority where the radio is full."};
 }
 
 ConfigKey WeightKey()
@@ -204,7 +219,7 @@ ConfigSection PublishSection()
               "Name of the local message, and of the DDS topic.", RequiredKey},
              {"type", "name of an IDL type", "", "Uav::Pose", "The type must be linked into the program.",
               RequiredKey},
-             {"qos", "`state` or `telemetry`", "state", "telemetry",
+             {"qos", OneOf(QosProfileWords), "state", "telemetry",
               "`state`: every reader gets the newest value, late ones too. `telemetry`: nothing is "
               "retransmitted, as a newer value comes soon."},
              {"max_rate", "number from 0 to 1000000, Hz", "0", "10",
@@ -224,7 +239,7 @@ ConfigSection SubscribeSection()
               RequiredKey},
              {"from", "list of nodes; `*` and `?` are wildcards", "[\"*\"]", "[\"uav*\"]",
               "Nodes that it is read from."},
-             {"qos", "`state` or `telemetry`", "", "telemetry", "Default: as the publisher announces."}}};
+             {"qos", OneOf(QosProfileWords), "", "telemetry", "Default: as the publisher announces."}}};
 }
 
 ConfigSection AcceptSection()

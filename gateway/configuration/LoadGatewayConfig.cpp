@@ -7,7 +7,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "air/ClassShares.h"
 #include "configuration/ConfigSections.h"
 #include "configuration/ForeignEntries.h"
 #include "configuration/PanelEntries.h"
@@ -15,6 +14,7 @@
 #include "configuration/ValidateGatewayConfig.h"
 #include "configuration/YamlMap.h"
 #include "names/QosProfileWords.h"
+#include "names/TrafficClassWords.h"
 
 namespace Rabit
 {
@@ -181,7 +181,7 @@ void ReadFetch(const YamlMap &map, GatewayConfig &config)
 
 std::optional<TrafficClass> ReadClass(const YamlMap &entry)
 {
-    const int choice = entry.ReadChoice("class", TrafficClassWords);
+    const int choice = entry.ReadChoice("class", TrafficClassWords());
     return choice < 0 ? std::nullopt : std::optional(ChosenClass(static_cast<std::size_t>(choice)));
 }
 

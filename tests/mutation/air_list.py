@@ -129,7 +129,7 @@ MUTATIONS = [
     unit("a burst was carried from the first", "SentHistory.cpp",
          "most = std::max(most, rate(before - static_cast<double>(Nth(i).Total), Nth(i).At));", "",
          "SentHistory.ABurstBehindAPause*"),
-    unit("a round is long", "ClassShares.h", "{0, 256, 64, 24, 16}", "{0, 1600, 400, 150, 100}",
+    unit("a round is long", "ClassShares.h", "BytesPerShare = 8", "BytesPerShare = 50",
          "AirScheduleTest.TelemetryIsNotHeldUp*"),
     unit("the delay does not count", "CapacityEstimate.cpp",
          "EmptyingRate(_carried, Queue(now))", "_carried", "CapacityEstimateTest.*"),

@@ -256,9 +256,13 @@ Json ToJson(const Rabit::Gateway::AirStatus &air)
     Json object = {{"budget", limit(air.budget)},
                    {"capacity", limit(air.capacity)},
                    {"used", Rounded(air.used, 1)},
-                   {"discovery", Rounded(air.discovery, 1)}};
+                   {"classes", Json::array()}};
+    const auto add = [&classes = object["classes"]](const char *name, double rate) {
+        classes.push_back({{"name", name}, {"rate", Rounded(rate, 1)}});
+    };
     for (const auto &[name, rate] : Rabit::ClassRates)
-        object[name] = Rounded(air.*rate, 1);
+        add(name, air.*rate);
+    add("discovery", air.discovery);
     return object;
 }
 

@@ -222,12 +222,13 @@ TEST_F(Snapshot, TellsWhatTheRadioDoesAndWhatIsHeldBack)
     EXPECT_EQ(shown["air"], Json({{"budget", 5000},
                                   {"capacity", nullptr},
                                   {"used", 4940},
-                                  {"presence", 400},
-                                  {"command", 90},
-                                  {"state", 30},
-                                  {"telemetry", 4200},
-                                  {"bulk", 10},
-                                  {"discovery", 210}}));
+                                  {"classes",
+                                   {{{"name", "presence"}, {"rate", 400}},
+                                    {{"name", "command"}, {"rate", 90}},
+                                    {{"name", "state"}, {"rate", 30}},
+                                    {{"name", "telemetry"}, {"rate", 4200}},
+                                    {{"name", "bulk"}, {"rate", 10}},
+                                    {{"name", "discovery"}, {"rate", 210}}}}}));
     EXPECT_EQ(shown["posts_held_per_s"], 3.8);
     EXPECT_EQ(shown["messages_held"], 3);
     EXPECT_EQ(
@@ -263,8 +264,9 @@ TEST_F(Snapshot, TellsNothingOfARadioWhoseNumbersMakeNoSense)
     Aircraft().DeliveryRate = std::numeric_limits<double>::infinity();
     const Json whole = Shown();
     const Json &shown = whole["radio"];
-    for (const char *name : {"budget", "capacity", "used", "bulk"})
+    for (const char *name : {"budget", "capacity", "used"})
         EXPECT_TRUE(shown["air"][name].is_null()) << name;
+    EXPECT_TRUE(shown["air"]["classes"][4]["rate"].is_null());  // bulk
     EXPECT_TRUE(shown["posts_held_per_s"].is_null());
     EXPECT_EQ(shown["streams"]["items"][0]["message"], "\xEF\xBF\xBD");
     EXPECT_TRUE(shown["streams"]["items"][0]["sent_per_s"].is_null());

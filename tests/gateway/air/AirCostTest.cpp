@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "air/ClassShares.h"
-
 namespace Rabit
 {
 namespace
@@ -52,13 +50,6 @@ TEST(AirCost, TheLargestBodyWithinACostHasThatCost)
     EXPECT_EQ(cost.Of(cost.BodyWithin(400, false)), 400u);
     EXPECT_EQ(cost.BodyWithin(100'000, false), 1340u);
     EXPECT_EQ(cost.BodyWithin(60, false), 0u);
-}
-
-TEST(TrafficClassWords, AConfigurationMayChooseAllButPresence)
-{
-    EXPECT_EQ(TrafficClassWords, (std::vector<std::string>{"command", "state", "telemetry", "bulk"}));
-    EXPECT_EQ(ChosenClass(0), TrafficClass::Command);
-    EXPECT_EQ(ChosenClass(TrafficClassWords.size() - 1), TrafficClass::Bulk);
 }
 
 }  // namespace

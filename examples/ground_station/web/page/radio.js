@@ -2,8 +2,6 @@
 import {ageWithUnit, fixed, isNumber} from './format.js';
 import {byId, element, keepList, setClass, setText} from './dom.js';
 
-const CLASSES = ['presence', 'command', 'state', 'telemetry', 'bulk', 'discovery'];
-
 function bytesPerSecond(value) {
   if (!isNumber(value)) return '–';
   if (value < 999.5) return `${fixed(value, 0)} B/s`;
@@ -63,7 +61,7 @@ export class RadioPanel {
     const items = heldBack(radio);
     setClass(panel, `panel radio${items.length > 0 ? ' held' : ''}${fresh ? '' : ' old'}`);
     setText(byId('radio-summary'), said.join(' · '));
-    const used = limited.length > 0 ? CLASSES.filter((name) => air[name] > 0).map((name) => `${name} ${kilo(air[name])}`) : [];
+    const used = limited.length > 0 ? air.classes.filter(({rate}) => rate > 0).map(({name, rate}) => `${name} ${kilo(rate)}`) : [];
     setText(byId('radio-classes'), used.length > 0 ? `kB/s: ${used.join(' · ')}` : '');
     keepList(byId('radio-held'), this.items, items, (one) => one.key, () => {
       const item = {root: element('li', 'warning'), who: element('span', 'who'), what: element('span', 'what')};

@@ -1,22 +1,33 @@
 #pragma once
 
 #include <rabit/gateway/Fleet.h>
+#include <rabit/gateway/TrafficClass.h>
 
 #include <array>
+#include <cstddef>
 
 namespace Rabit
 {
 
-// The rate of each traffic class in Gateway::AirStatus, in the order of TrafficClass.
 struct ClassRate
 {
     const char *Name;
     double Gateway::AirStatus::*Value;
 };
-inline constexpr std::array<ClassRate, 5> ClassRates = {{{"presence", &Gateway::AirStatus::presence},
-                                                         {"command", &Gateway::AirStatus::command},
-                                                         {"state", &Gateway::AirStatus::state},
-                                                         {"telemetry", &Gateway::AirStatus::telemetry},
-                                                         {"bulk", &Gateway::AirStatus::bulk}}};
+
+// The rate of each traffic class in Gateway::AirStatus, in the order of TrafficClass.
+inline constexpr auto ClassRates = []
+{
+    using Gateway::AirStatus;
+    constexpr std::array fields = {&AirStatus::presence, &AirStatus::command, &AirStatus::state,
+                                   &AirStatus::telemetry, &AirStatus::bulk};
+    static_assert(fields.size() == TrafficClassCount);
+    std::array<ClassRate, TrafficClassCount> rates{};
+    for (std::size_t i = 0; i < rates.size(); ++i)
+    {
+        rates[i] = {TrafficClasses[i].Name, fields[i]};
+    }
+    return rates;
+}();
 
 }  // namespace Rabit
