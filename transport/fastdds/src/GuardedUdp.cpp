@@ -12,10 +12,10 @@
 #include "AcknowledgementTranslator.h"
 #include "AnnouncementPace.h"
 #include "HeartbeatPace.h"
-#include "Introductions.h"
 #include "KeyAddressees.h"
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
+#include "VendorInput.h"
 #include "common/HardwareAddresses.h"
 #include "common/HeldDatagrams.h"
 #include "common/RecentNumbers.h"
@@ -85,6 +85,8 @@ public:
           _descriptor(descriptor),
           _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod,
                  RtpsGuard::Requests::Checked, descriptor.Chosen().Goodbyes),
+          _input(descriptor.Chosen().GroupPort,
+                 AwaitsProtectedAnnouncements && descriptor.Chosen().Authentication != nullptr),
           _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr),
           _cardRoutes(descriptor.Chosen().AnnouncementPeriod)
     {
@@ -114,7 +116,7 @@ public:
             authentication->Start({.IsAuthenticated =
                                        [this](const auto &peer)
                                    {
-                                       const GuidPrefix own = OwnPrefix();
+                                       const GuidPrefix own = _input.OwnPrefix();
                                        return own != GuidPrefix{} && KeyAddressees::HasKeysOf(own, peer);
                                    },
                                    .Ask = nullptr,
@@ -163,11 +165,11 @@ public:
         {
             return true;
         }
-        const std::lock_guard lock(_sending);
         if (message.Announcement)
         {
-            _announcement.assign(datagram.begin(), datagram.end());
+            _input.NoteOwn(datagram);
         }
+        const std::lock_guard lock(_sending);
         if (message.Announcement && _descriptor.Chosen().Mode == RtpsGuard::Mode::Full)
         {
             WriteWithoutProperties(datagram, _shortened);
@@ -248,16 +250,14 @@ public:
         const Receiver receiver{next, local, remote};
         if (Meeting() != nullptr || Authentication() != nullptr)
         {
-            const std::lock_guard lock(_receiving);
-            _receivers.insert_or_assign(local.port, receiver);
+            _input.NoteReceiver(receiver);
         }
         if (Meeting() != nullptr && IsCardMessage(datagram))
         {
             if (Meeting()->Received(datagram, HostOf(remote),
                                     _guard.IsKnownAt(SenderOf(datagram), HostOf(remote))))
             {
-                const std::lock_guard lock(_receiving);
-                _cardPort = local.port;
+                _input.NoteCardPort(local.port);
             }
             else
             {
@@ -277,7 +277,7 @@ public:
                 return;
             }
             NoteAcknowledgements(admitted);
-            Deliver(receiver, admitted);
+            _input.Deliver(receiver, admitted);
         };
         if (!_guard.Admit(datagram, HostOf(remote), std::chrono::steady_clock::now(), std::cref(handOn)))
         {
@@ -287,94 +287,25 @@ public:
         {
             _descriptor.Chosen().Announce();
         }
-        if (AwaitsProtectedAnnouncements && Authentication() != nullptr)
-        {
-            Introduce(datagram);
-        }
+        _input.Introduce(datagram);
     }
 
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
-    // The vendor's receiver of the datagrams that come to one of its ports.
-    struct Receiver
-    {
-        TransportReceiverInterface *Next = nullptr;
-        rtps::Locator_t Local;
-        rtps::Locator_t Remote;
-    };
 
     MeetingThread *Meeting() const { return _descriptor.Chosen().Meeting.get(); }
     AuthenticationThread *Authentication() const { return _descriptor.Chosen().Authentication.get(); }
-    std::vector<std::uint8_t> OwnAnnouncement()
-    {
-        const std::lock_guard lock(_sending);
-        return _announcement;
-    }
-    // The sender of OwnAnnouncement; GuidPrefix{}: there is none yet.
-    GuidPrefix OwnPrefix()
-    {
-        const std::lock_guard lock(_sending);
-        return _announcement.empty() ? GuidPrefix{} : SenderOf(_announcement);
-    }
     // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
     void Forget(const GuidPrefix &peer, std::int64_t number)
     {
-        const std::vector<std::uint8_t> own = OwnAnnouncement();
+        const std::vector<std::uint8_t> own = _input.OwnAnnouncement();
         // First of all, so that no announcement comes in between.
         _descriptor.Chosen().Goodbyes->Note(peer, std::chrono::steady_clock::now());
         const auto ours = GoodbyeAfter(own, peer);
         SendCard(peer, ours);
         SendCard(std::nullopt, ours);
         auto theirs = GoodbyeOf(peer, own, number);
-        const Receiver receiver = DiscoveryReceiver();
-        // A vendor that waits for protected announcements heeds a goodbye only of participants of which it
-        // has had one. Otherwise it would remember a failed handshake for good.
-        if (auto announcement = _introductions.Take(peer); !announcement.empty())
-        {
-            HandOnAsProtected(receiver, peer, announcement);
-        }
-        HandOnAsProtected(receiver, peer, theirs);
-    }
-    // Hands a received datagram to the vendor.
-    void Deliver(const Receiver &receiver, std::span<std::uint8_t> admitted)
-    {
-        if (AwaitsProtectedAnnouncements && Authentication() != nullptr &&
-            _introductions.Read(admitted) == Introductions::Message::Goodbye)
-        {
-            HandOnAsProtected(receiver, SenderOf(admitted), admitted);
-            return;
-        }
-        HandOn(receiver, admitted);
-    }
-    // Hands the announcement of a datagram's sender to the vendor once more, if the sender is authenticated.
-    // The vendor has seen the datagram.
-    void Introduce(std::span<const std::uint8_t> datagram)
-    {
-        const GuidPrefix peer = datagram.size() < RtpsHeaderSize ? GuidPrefix{} : SenderOf(datagram);
-        if (!_introductions.Has(peer))
-        {
-            return;
-        }
-        const GuidPrefix own = OwnPrefix();
-        if (own == GuidPrefix{} || !KeyAddressees::IsAuthenticated(own, peer))
-        {
-            return;
-        }
-        if (auto announcement = _introductions.Take(peer); !announcement.empty())
-        {
-            HandOnAsProtected(DiscoveryReceiver(), peer, announcement);
-        }
-    }
-    void HandOnAsProtected(const Receiver &receiver, const GuidPrefix &peer, std::span<std::uint8_t> message)
-    {
-        const GuidPrefix own = OwnPrefix();
-        if (own == GuidPrefix{})
-        {
-            HandOn(receiver, message);
-            return;
-        }
-        const std::lock_guard lock(_protecting);
-        AsProtected(own, peer, [&] { HandOn(receiver, message); });
+        _input.Forget(peer, theirs);
     }
     KeyThread *Keys() const { return _descriptor.Chosen().Keys.get(); }
     // Notes the address of a participant to which the vendor sends. Requires _sending.
@@ -412,38 +343,12 @@ private:
             SendChosen(sender, datagram, false, timeout);
         }
     }
-    // Returns a receiver for datagrams of discovery that are made here; the vendor's receivers of samples
-    // drop these. Next is null until a datagram has come to a port of discovery.
-    Receiver DiscoveryReceiver()
-    {
-        auto ports = DiscoveryPortsOf(OwnAnnouncement());
-        // The vendor does not announce the group that it listens to where samples do not go by multicast.
-        ports.push_back(_descriptor.Chosen().GroupPort);
-        const std::lock_guard lock(_receiving);
-        // A node without multicast that lists no peers announces itself only when it has heard of one.
-        ports.push_back(_cardPort);
-        for (const std::uint32_t port : ports)
-        {
-            if (const auto found = _receivers.find(port); found != _receivers.end())
-            {
-                return found->second;
-            }
-        }
-        return {};
-    }
-    static void HandOn(const Receiver &receiver, std::span<std::uint8_t> message)
-    {
-        if (receiver.Next != nullptr)
-        {
-            receiver.Next->OnDataReceived(message.data(), static_cast<std::uint32_t>(message.size()),
-                                          receiver.Local, receiver.Remote);
-        }
-    }
     // Runs on the meeting's thread. The vendor accepts datagrams on several threads.
     void DeliverCard(const HostAddress &from, std::span<std::uint8_t> datagram)
     {
-        const Receiver receiver = DiscoveryReceiver();
-        const auto handOn = [&](std::span<std::uint8_t> admitted) { HandOn(receiver, admitted); };
+        const Receiver receiver = _input.DiscoveryReceiver();
+        const auto handOn = [&](std::span<std::uint8_t> admitted)
+        { VendorInput::HandOn(receiver, admitted); };
         if (receiver.Next != nullptr && !_guard.Admit(datagram, from, std::chrono::steady_clock::now(),
                                                       std::cref(handOn), RtpsGuard::Origin::Card))
         {
@@ -599,19 +504,15 @@ private:
 
     GuardedUdpDescriptor _descriptor;
     RtpsGuard _guard;
-    std::mutex _receiving;                         // several sockets receive at the same time
-    AcknowledgementTranslator _translator;         // guarded by _receiving
-    std::map<std::uint32_t, Receiver> _receivers;  // by port; guarded by _receiving
-    std::uint32_t _cardPort = 0;                   // of the last sound card message; guarded by _receiving
-    Introductions _introductions;                  // empty if the vendor does not need them
-    std::mutex _protecting;                        // for AsProtected
-    std::mutex _sending;                           // guards the members below
+    VendorInput _input;
+    std::mutex _receiving;                  // several sockets receive at the same time
+    AcknowledgementTranslator _translator;  // guarded by _receiving
+    std::mutex _sending;                    // guards the members below
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;
     HardwareAddresses _addresses;
     CardRoutes<Route> _cardRoutes;
-    std::vector<std::uint8_t> _announcement;  // our last one
     RecentNumbers<rtps::Locator_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _senders;
     std::vector<rtps::Locator_t> _chosen;
