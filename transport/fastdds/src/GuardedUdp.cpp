@@ -41,6 +41,10 @@ namespace
 // than half a percent of them.
 constexpr std::size_t LargestShortened = 4096;
 
+// How long a socket may take for a datagram that the vendor does not send at this moment. A socket that does
+// not block takes no time.
+constexpr std::chrono::milliseconds SocketTimeout{100};
+
 class ListIterator final : public rtps::LocatorsIterator
 {
 public:
@@ -334,8 +338,7 @@ private:
     }
     void SendTo(const std::vector<Route> &routes, std::span<const std::uint8_t> datagram)
     {
-        constexpr std::chrono::milliseconds LongestWait{100};
-        const auto timeout = std::chrono::steady_clock::now() + LongestWait;
+        const auto timeout = std::chrono::steady_clock::now() + SocketTimeout;
         const std::lock_guard lock(_sending);
         for (const auto &[sender, destination] : routes)
         {
@@ -419,12 +422,11 @@ private:
                           [this, sender, destinations = _chosen,
                            bytes = std::vector<std::uint8_t>(datagram.begin(), datagram.end())]
                           {
-                              constexpr std::chrono::milliseconds LongestWait{100};
                               const auto now = std::chrono::steady_clock::now();
                               const std::lock_guard lock(_sending);
                               _chosen = destinations;
                               ChooseGroupWhereAddressesLack(NumberOf(sender), false, now);
-                              SendChosen(sender, bytes, true, now + LongestWait);
+                              SendChosen(sender, bytes, true, now + SocketTimeout);
                           });
     }
     // Takes a datagram of a key exchange, for each of its destinations. Returns false if it should be sent
