@@ -25,8 +25,6 @@ namespace
 
 using namespace RtpsBytes;
 using namespace Rabit::FastDds;
-// Version 2 has a second name for it, beside which clang takes neither in `rtps`.
-using eprosima::fastdds::rtps::Locators;
 using Rabit::DiscoveryTurns;
 using Rabit::Rtps::AuthenticationThread;
 using Rabit::Rtps::RtpsGuard;
@@ -132,8 +130,8 @@ protected:
         _udp->OpenOutputChannel(_sockets, At(port));
         rtps::LocatorList list;
         list.push_back(At(port));
-        Locators begin(list.begin());
-        Locators end(list.end());
+        rtps::Locators begin(list.begin());
+        rtps::Locators end(list.end());
         Own->Send(*_sockets.front(), datagram, begin, end, std::chrono::steady_clock::now() + Limit);
     }
     void Receive(Port &to, std::uint32_t port, Bytes datagram)
@@ -163,7 +161,7 @@ private:
     const std::unique_ptr<rtps::TransportInterface> _udp{_udpDescriptor->create_transport()};
     rtps::SendResourceList _sockets;
     rtps::LocatorList _noLocators;
-    Locators _nobody{_noLocators.begin()};
+    rtps::Locators _nobody{_noLocators.begin()};
     const GuardedUdpDescriptor _descriptor{_udpDescriptor, Secured()};
 
 protected:

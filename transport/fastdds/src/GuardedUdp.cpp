@@ -4,7 +4,6 @@
 #include <chrono>
 #include <functional>
 #include <initializer_list>
-#include <map>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -15,14 +14,12 @@
 #include "KeyAddressees.h"
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
+#include "SocketOutput.h"
 #include "VendorInput.h"
-#include "common/HardwareAddresses.h"
 #include "common/HeldDatagrams.h"
-#include "common/RecentNumbers.h"
 #include "common/RtpsTraffic.h"
 #include "common/RtpsWriter.h"
 #include "common/SendingSamples.h"
-#include "rtps/CardRoutes.h"
 #include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::FastDds
@@ -45,42 +42,6 @@ constexpr std::size_t LargestShortened = 4096;
 // not block takes no time.
 constexpr std::chrono::milliseconds SocketTimeout{100};
 
-class ListIterator final : public rtps::LocatorsIterator
-{
-public:
-    explicit ListIterator(std::vector<rtps::Locator_t>::const_iterator at) : _at(at) {}
-
-    rtps::LocatorsIterator &operator++() override
-    {
-        ++_at;
-        return *this;
-    }
-    bool operator==(const rtps::LocatorsIterator &other) const override
-    {
-        return _at == static_cast<const ListIterator &>(other)._at;
-    }
-    bool operator!=(const rtps::LocatorsIterator &other) const override { return !(*this == other); }
-    const rtps::Locator_t &operator*() const override { return *_at; }
-
-private:
-    std::vector<rtps::Locator_t>::const_iterator _at;
-};
-
-HostAddress HostOf(const rtps::Locator_t &locator)
-{
-    HostAddress host = UnknownHost;
-    if (locator.kind == LOCATOR_KIND_UDPv4)
-    {
-        std::copy_n(rtps::IPLocator::getIPv4(locator), host.size(), host.begin());
-    }
-    return host;
-}
-
-bool IsGroup(const rtps::Locator_t &locator)
-{
-    return rtps::IPLocator::isMulticast(locator);
-}
-
 class GuardedUdp final : public ChainedUdp
 {
 public:
@@ -91,8 +52,8 @@ public:
                  RtpsGuard::Requests::Checked, descriptor.Chosen().Goodbyes),
           _input(descriptor.Chosen().GroupPort,
                  AwaitsProtectedAnnouncements && descriptor.Chosen().Authentication != nullptr),
-          _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr),
-          _cardRoutes(descriptor.Chosen().AnnouncementPeriod)
+          _output(_descriptor.Chosen(), _guard, *low_level_transport_),
+          _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr)
     {
         if (Keys() != nullptr)
         {
@@ -151,7 +112,7 @@ public:
     bool MaySendTo(const rtps::Locator_t &remote) const override
     {
         const std::uint32_t port = _descriptor.Chosen().GroupPort;
-        return port == 0 || port == remote.port || !rtps::IPLocator::isMulticast(remote);
+        return port == 0 || port == remote.port || !IsGroup(remote);
     }
 
     // The vendor calls it with a lock held that it also holds for OpenOutputChannel. Our own lock costs
@@ -185,8 +146,7 @@ public:
             return true;
         }
         const auto now = std::chrono::steady_clock::now();
-        const std::uint32_t socket = NumberOf(sender);
-        if (message.Request && !_requests.MayGo(socket, *message.Request, now))
+        if (message.Request && !_requests.MayGo(_output.NumberOf(sender), *message.Request, now))
         {
             return true;
         }
@@ -194,7 +154,7 @@ public:
         for (; begin != end; ++begin)
         {
             const rtps::Locator_t &destination = *begin;
-            const std::uint64_t number = std::uint64_t{socket} << 32 | NumberOf(destination);
+            const std::uint64_t number = _output.NumberOf({sender, destination});
             const bool held =
                 (message.Announcement &&
                  !_announcements.MayGo(number, *message.Announcement, _guard.AnnouncementsHeard(), now)) ||
@@ -205,7 +165,7 @@ public:
             }
             if (message.Announcement && (IsGroup(destination) || _descriptor.Chosen().HasPeers))
             {
-                _cardRoutes.NoteForAll({sender, destination}, IsGroup(destination), now);
+                _output.NoteAnnounced({sender, destination}, now);
             }
         }
         if (message.Announcement)
@@ -218,7 +178,7 @@ public:
         // A datagram that is held now chooses its way when it is sent.
         if (message.HasSamples && HeldDatagrams::OfThisThread() == nullptr)
         {
-            ChooseGroupWhereAddressesLack(socket, message.IsOfSamplesToOne, now);
+            _output.ChooseGroupWhereAddressesLack(sender, message.IsOfSamplesToOne, now, _chosen);
         }
         if (message.IsOfSamplesToOne && datagram.size() <= LargestShortened &&
             std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
@@ -239,7 +199,7 @@ public:
                 datagram = _shortened;
             }
         }
-        return Hold(sender, datagram) || SendChosen(sender, datagram, message.HasSamples, timeout);
+        return Hold(sender, datagram) || _output.Send(sender, _chosen, datagram, message.HasSamples, timeout);
     }
 
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
@@ -319,10 +279,9 @@ private:
         const GuidPrefix to = DestinationOf(datagram);
         for (; to != GuidPrefix{} && begin != end; ++begin)
         {
-            if (Leaves(NumberOf(sender), *begin) && !IsGroup(*begin))
+            if (_output.Leaves({sender, *begin}) && !IsGroup(*begin))
             {
-                NumberOf(*begin);
-                _cardRoutes.Note(to, {sender, *begin});
+                _output.NoteRoute(to, {sender, *begin});
             }
         }
     }
@@ -332,7 +291,7 @@ private:
         std::vector<Route> routes;
         {
             const std::lock_guard lock(_sending);
-            routes = _cardRoutes.To(to, std::chrono::steady_clock::now());
+            routes = _output.RoutesTo(to, std::chrono::steady_clock::now());
         }
         SendTo(routes, datagram);
     }
@@ -343,7 +302,7 @@ private:
         for (const auto &[sender, destination] : routes)
         {
             _chosen.assign(1, destination);
-            SendChosen(sender, datagram, false, timeout);
+            _output.Send(sender, _chosen, datagram, false, timeout);
         }
     }
     // Runs on the meeting's thread. The vendor accepts datagrams on several threads.
@@ -359,74 +318,21 @@ private:
         }
     }
 
-    // True if the socket sends to a destination that it is given.
-    bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const
-    {
-        return _descriptor.Chosen().SocketsSendAll ||
-               rtps::IPLocator::isMulticast(destination) != (socket == 0);
-    }
-
-    // Samples for hosts with unknown hardware addresses go to the group instead. `toOne`: all destinations
-    // are addresses of one participant, and one that works is enough.
-    void ChooseGroupWhereAddressesLack(std::uint32_t socket, bool toOne, TimePoint now)
-    {
-        const auto isAwaited = [this, now](const rtps::Locator_t &destination)
-        { return !IsGroup(destination) && _addresses.IsAwaited(HostOf(destination), now); };
-        if (Meeting() == nullptr || !_descriptor.Chosen().SampleGroup ||
-            (toOne && !std::all_of(_chosen.begin(), _chosen.end(), isAwaited)))
-        {
-            return;
-        }
-        bool lacks = false;
-        std::erase_if(_chosen,
-                      [&](const rtps::Locator_t &destination)
-                      {
-                          const HostAddress host = HostOf(destination);
-                          const bool byGroup = isAwaited(destination) &&
-                                               _guard.GroupReaches(host, now - HardwareAddresses::InReach);
-                          lacks = lacks || byGroup;
-                          return byGroup && Leaves(socket, destination) && !_addresses.HasToAsk(host, now);
-                      });
-        if (lacks && std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
-        {
-            _chosen.push_back(*_descriptor.Chosen().SampleGroup);
-            NumberOf(_chosen.back());
-        }
-    }
-
-    std::size_t DatagramsTo(rtps::SenderResource *sender)
-    {
-        const std::uint32_t socket = NumberOf(sender);
-        return static_cast<std::size_t>(std::count_if(_chosen.begin(), _chosen.end(),
-                                                      [&](const rtps::Locator_t &destination)
-                                                      { return Leaves(socket, destination); }));
-    }
-    // Sends to _chosen. Requires _sending.
-    bool SendChosen(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram, bool samples,
-                    const TimePoint &timeout)
-    {
-        const std::size_t datagrams = DatagramsTo(sender);
-        _descriptor.Chosen().OnSent(samples, datagrams, datagrams * datagram.size());
-        ListIterator first(_chosen.cbegin());
-        ListIterator last(_chosen.cend());
-        return SendOn(*sender, datagram, first, last, timeout);
-    }
     // Returns true if the datagram is held for SendHeld (HeldDatagrams). Requires _sending. The writer, which
     // owns the held datagrams, is destroyed before this object.
     bool Hold(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram)
     {
         HeldDatagrams::Scope *const held = HeldDatagrams::OfThisThread();
-        const std::size_t datagrams = held != nullptr ? DatagramsTo(sender) : 0;
+        const std::size_t datagrams = held != nullptr ? _output.DatagramsTo(sender, _chosen) : 0;
         return datagrams > 0 &&
                held->Keep(datagrams * (HeldDatagrams::IpAndUdp + datagram.size()),
                           [this, sender, destinations = _chosen,
-                           bytes = std::vector<std::uint8_t>(datagram.begin(), datagram.end())]
+                           bytes = std::vector<std::uint8_t>(datagram.begin(), datagram.end())]() mutable
                           {
                               const auto now = std::chrono::steady_clock::now();
                               const std::lock_guard lock(_sending);
-                              _chosen = destinations;
-                              ChooseGroupWhereAddressesLack(NumberOf(sender), false, now);
-                              SendChosen(sender, bytes, true, now + SocketTimeout);
+                              _output.ChooseGroupWhereAddressesLack(sender, false, now, destinations);
+                              _output.Send(sender, destinations, bytes, true, now + SocketTimeout);
                           });
     }
     // Takes a datagram of a key exchange, for each of its destinations. Returns false if it should be sent
@@ -438,10 +344,9 @@ private:
         for (; what && begin != end; ++begin)
         {
             std::unique_lock lock(_sending);
-            if (Leaves(NumberOf(sender), *begin))
+            if (_output.Leaves({sender, *begin}))
             {
-                NumberOf(*begin);
-                _cardRoutes.Note(what->To, {sender, *begin});
+                _output.NoteRoute(what->To, {sender, *begin});
                 lock.unlock();
                 if (Authentication() != nullptr && what->To != KeyExchange::Prefix{})
                 {
@@ -486,40 +391,18 @@ private:
         }
     }
 
-    // The vendor's sockets know only the destinations that a writer names when it matches. If the writer
-    // later uses another one, an assertion ends the process: the reader's own address, for instance, where
-    // several share a group.
-    std::uint32_t NumberOf(const rtps::Locator_t &destination)
-    {
-        const auto [number, isNew] = _destinations.Of(destination);
-        if (isNew)
-        {
-            // Opens no socket: one exists already, and is about to send.
-            low_level_transport_->OpenOutputChannel(_noSockets, destination);
-        }
-        return static_cast<std::uint32_t>(number);
-    }
-    std::uint32_t NumberOf(const rtps::SenderResource *sender)
-    {
-        return _senders.emplace(sender, static_cast<std::uint32_t>(_senders.size())).first->second;
-    }
-
     GuardedUdpDescriptor _descriptor;
     RtpsGuard _guard;
     VendorInput _input;
     std::mutex _receiving;                  // several sockets receive at the same time
     AcknowledgementTranslator _translator;  // guarded by _receiving
     std::mutex _sending;                    // guards the members below
+    SocketOutput _output;
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;
-    HardwareAddresses _addresses;
-    CardRoutes<Route> _cardRoutes;
-    RecentNumbers<rtps::Locator_t> _destinations;
-    std::map<const rtps::SenderResource *, std::uint32_t> _senders;
-    std::vector<rtps::Locator_t> _chosen;
+    SocketOutput::Destinations _chosen;    // of the datagram to send
     std::vector<std::uint8_t> _shortened;  // the datagram to send, if shorter than the vendor's
-    rtps::SendResourceList _noSockets;
 };
 
 }  // namespace

@@ -94,6 +94,7 @@ namespace rtps
 {
 using namespace eprosima::fastdds::rtps;
 using namespace eprosima::fastrtps::rtps;
+using Locators = eprosima::fastdds::rtps::Locators;
 using LocatorsIterator = eprosima::fastdds::rtps::LocatorsIterator;
 }  // namespace rtps
 using Duration = eprosima::fastrtps::Duration_t;
@@ -191,6 +192,22 @@ inline rtps::GUID_t GuidOf(const Rtps::GuidPrefix &participant, Rtps::EntityId e
     rtps::GUID_t guid({}, entity);
     std::copy(participant.begin(), participant.end(), guid.guidPrefix.value);
     return guid;
+}
+
+// The IPv4 host of an address of the vendor's; UnknownHost for other kinds.
+inline Rtps::HostAddress HostOf(const rtps::Locator_t &locator)
+{
+    Rtps::HostAddress host = Rtps::UnknownHost;
+    if (locator.kind == LOCATOR_KIND_UDPv4)
+    {
+        std::copy_n(rtps::IPLocator::getIPv4(locator), host.size(), host.begin());
+    }
+    return host;
+}
+
+inline bool IsGroup(const rtps::Locator_t &locator)
+{
+    return rtps::IPLocator::isMulticast(locator);
 }
 
 // Makes a new participant know the interfaces of now: version 3 reads them once for all participants of a

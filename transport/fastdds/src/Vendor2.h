@@ -179,7 +179,6 @@ public:
                       rtps::LocatorsIterator &begin, rtps::LocatorsIterator &end,
                       const std::chrono::steady_clock::time_point &timeout) = 0;
 
-protected:
     static bool SendOn(rtps::SenderResource &sender, std::span<const std::uint8_t> datagram,
                        rtps::LocatorsIterator &begin, rtps::LocatorsIterator &end,
                        const std::chrono::steady_clock::time_point &timeout)

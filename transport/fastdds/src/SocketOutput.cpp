@@ -1,0 +1,107 @@
+#include "SocketOutput.h"
+
+#include <algorithm>
+
+namespace Rabit::FastDds
+{
+
+using namespace Rtps;
+
+std::uint32_t SocketOutput::NumberOf(const rtps::SenderResource *socket)
+{
+    return _sockets.emplace(socket, static_cast<std::uint32_t>(_sockets.size())).first->second;
+}
+
+// The vendor's sockets know only the destinations that a writer names when it matches. If the writer later
+// uses another one, an assertion ends the process: the reader's own address, for instance, where several
+// share a group.
+std::uint32_t SocketOutput::NumberOf(const rtps::Locator_t &destination)
+{
+    const auto [number, isNew] = _destinations.Of(destination);
+    if (isNew)
+    {
+        // Opens no socket: one exists already, and is about to send.
+        _udp.OpenOutputChannel(_noSockets, destination);
+    }
+    return static_cast<std::uint32_t>(number);
+}
+
+std::uint64_t SocketOutput::NumberOf(const Route &route)
+{
+    const std::uint64_t socket = NumberOf(route.first);
+    return socket << 32 | NumberOf(route.second);
+}
+
+bool SocketOutput::Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const
+{
+    return _settings.SocketsSendAll || IsGroup(destination) != (socket == 0);
+}
+
+bool SocketOutput::Leaves(const Route &route)
+{
+    return Leaves(NumberOf(route.first), route.second);
+}
+
+void SocketOutput::NoteRoute(const GuidPrefix &peer, const Route &route)
+{
+    NumberOf(route.second);
+    _cardRoutes.Note(peer, route);
+}
+
+void SocketOutput::NoteAnnounced(const Route &route, TimePoint now)
+{
+    _cardRoutes.NoteForAll(route, IsGroup(route.second), now);
+}
+
+std::vector<Route> SocketOutput::RoutesTo(const std::optional<GuidPrefix> &peer, TimePoint now)
+{
+    return _cardRoutes.To(peer, now);
+}
+
+void SocketOutput::ChooseGroupWhereAddressesLack(const rtps::SenderResource *socket, bool toOne,
+                                                 TimePoint now, Destinations &destinations)
+{
+    const auto isAwaited = [this, now](const rtps::Locator_t &destination)
+    { return !IsGroup(destination) && _addresses.IsAwaited(HostOf(destination), now); };
+    if (_settings.Meeting == nullptr || !_settings.SampleGroup ||
+        (toOne && !std::all_of(destinations.begin(), destinations.end(), isAwaited)))
+    {
+        return;
+    }
+    const std::uint32_t number = NumberOf(socket);
+    bool lacks = false;
+    std::erase_if(destinations,
+                  [&](const rtps::Locator_t &destination)
+                  {
+                      const HostAddress host = HostOf(destination);
+                      const bool byGroup = isAwaited(destination) &&
+                                           _guard.GroupReaches(host, now - HardwareAddresses::InReach);
+                      lacks = lacks || byGroup;
+                      return byGroup && Leaves(number, destination) && !_addresses.HasToAsk(host, now);
+                  });
+    if (lacks && std::none_of(destinations.begin(), destinations.end(), IsGroup))
+    {
+        destinations.push_back(*_settings.SampleGroup);
+        NumberOf(destinations.back());
+    }
+}
+
+std::size_t SocketOutput::DatagramsTo(const rtps::SenderResource *socket, const Destinations &destinations)
+{
+    const std::uint32_t number = NumberOf(socket);
+    return static_cast<std::size_t>(std::count_if(destinations.begin(), destinations.end(),
+                                                  [&](const rtps::Locator_t &destination)
+                                                  { return Leaves(number, destination); }));
+}
+
+bool SocketOutput::Send(rtps::SenderResource *socket, const Destinations &destinations,
+                        std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout)
+{
+    const std::size_t datagrams = DatagramsTo(socket, destinations);
+    _settings.OnSent(samples, datagrams, datagrams * datagram.size());
+    rtps::Locators first(destinations.cbegin());
+    rtps::Locators last(destinations.cend());
+    return ChainedUdp::SendOn(*socket, datagram, first, last, timeout);
+}
+
+}  // namespace Rabit::FastDds

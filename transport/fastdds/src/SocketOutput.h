@@ -1,0 +1,80 @@
+// Gives datagrams to the vendor's sockets.
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "GuardedUdp.h"
+#include "Vendor.h"
+#include "common/HardwareAddresses.h"
+#include "common/RecentNumbers.h"
+#include "common/Rtps.h"
+#include "guard/RtpsGuard.h"
+#include "rtps/CardRoutes.h"
+
+namespace Rabit::FastDds
+{
+
+// Knows which of the vendor's sockets sends to which destinations, and which routes lead to a participant.
+// Sends samples to a group in place of hosts that the kernel cannot send to yet (HardwareAddresses).
+//
+// Not thread-safe: GuardedUdp calls all functions with one lock held. They call the sockets, OnSent and the
+// guard. The vendor owns the sockets, and keeps them as long as the transport.
+class SocketOutput
+{
+public:
+    using TimePoint = std::chrono::steady_clock::time_point;
+    using Destinations = std::vector<rtps::Locator_t>;
+
+    // The arguments must outlive the object. `udp`: the transport of the sockets.
+    SocketOutput(const GuardedUdpDescriptor::Settings &settings, Rtps::RtpsGuard &guard,
+                 rtps::TransportInterface &udp)
+        : _settings(settings), _guard(guard), _udp(udp), _cardRoutes(settings.AnnouncementPeriod)
+    {
+    }
+
+    // Numbers of sockets, in the order of their first use here, and of routes. Equal numbers mean equal
+    // routes.
+    std::uint32_t NumberOf(const rtps::SenderResource *socket);
+    std::uint64_t NumberOf(const Route &route);
+    // True if the socket of the route sends to a destination that it is given.
+    bool Leaves(const Route &route);
+
+    // Notes that the vendor sends to `peer` by that route.
+    void NoteRoute(const Rtps::GuidPrefix &peer, const Route &route);
+    // Notes that the vendor announces its participant by that route.
+    void NoteAnnounced(const Route &route, TimePoint now);
+    // The routes of a card message to a participant, or to all if it is empty or not known.
+    std::vector<Route> RoutesTo(const std::optional<Rtps::GuidPrefix> &peer, TimePoint now);
+
+    // Replaces destinations of samples with unknown hardware addresses by the group. `toOne`: all
+    // destinations are addresses of one participant, and one that works is enough.
+    void ChooseGroupWhereAddressesLack(const rtps::SenderResource *socket, bool toOne, TimePoint now,
+                                       Destinations &destinations);
+    // Number of datagrams that Send will send.
+    std::size_t DatagramsTo(const rtps::SenderResource *socket, const Destinations &destinations);
+    // Sends to those of the destinations to which the socket sends, and counts the datagrams (OnSent).
+    // `samples`: it has samples. Returns false if the socket fails.
+    bool Send(rtps::SenderResource *socket, const Destinations &destinations,
+              std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout);
+
+private:
+    bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const;
+    std::uint32_t NumberOf(const rtps::Locator_t &destination);
+
+    const GuardedUdpDescriptor::Settings &_settings;
+    Rtps::RtpsGuard &_guard;
+    rtps::TransportInterface &_udp;
+    HardwareAddresses _addresses;
+    Rtps::CardRoutes<Route> _cardRoutes;
+    RecentNumbers<rtps::Locator_t> _destinations;
+    std::map<const rtps::SenderResource *, std::uint32_t> _sockets;
+    rtps::SendResourceList _noSockets;
+};
+
+}  // namespace Rabit::FastDds
