@@ -25,6 +25,7 @@ constexpr std::uint32_t FarthestBehind = 16;
 
 void AcknowledgementTranslator::Translate(std::span<std::uint8_t> datagram)
 {
+    const std::lock_guard lock(_mutex);
     GuidPrefix sender = SenderOf(datagram);
     bool isSigned = false;
     VisitSubmessages(datagram,

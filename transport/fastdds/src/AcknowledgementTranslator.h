@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <span>
 #include <utility>
 
@@ -21,7 +22,7 @@
 namespace Rabit::FastDds
 {
 
-// Not thread-safe.
+// Thread-safe, because several sockets receive at once. Calls nothing with its lock held.
 class AcknowledgementTranslator
 {
 public:
@@ -34,7 +35,11 @@ public:
 
     // Bounded: forgetting an exchange costs no more than needless repairs.
     static constexpr std::size_t MostExchanges = 20'000;
-    std::size_t Exchanges() const { return _exchanges.size(); }
+    std::size_t Exchanges() const
+    {
+        const std::lock_guard lock(_mutex);
+        return _exchanges.size();
+    }
 
 private:
     // The reader, the writer, and the kind of submessage.
@@ -52,6 +57,7 @@ private:
                           bool something);
     void Forget(const Rtps::GuidPrefix &sender);
 
+    mutable std::mutex _mutex;  // guards the members below
     std::map<std::pair<Rtps::GuidPrefix, Exchange>, Counts> _exchanges;
     std::uint32_t _highest = 0;  // highest count given
     std::uint32_t _floor = 0;    // value of _highest when an exchange was last forgotten

@@ -235,7 +235,7 @@ public:
         }
         const auto handOn = [&](std::span<std::uint8_t> admitted)
         {
-            Translate(admitted);
+            _translator.Translate(admitted);
             if (!NoteExchange(admitted))
             {
                 return;
@@ -371,11 +371,6 @@ private:
         return !what || Keys()->Received(*what);
     }
 
-    void Translate(std::span<std::uint8_t> datagram)
-    {
-        const std::lock_guard lock(_receiving);
-        _translator.Translate(datagram);
-    }
     void NoteAcknowledgements(std::span<const std::uint8_t> datagram)
     {
         const auto found = ReadAcknowledgements(datagram);
@@ -394,9 +389,8 @@ private:
     GuardedUdpDescriptor _descriptor;
     RtpsGuard _guard;
     VendorInput _input;
-    std::mutex _receiving;                  // several sockets receive at the same time
-    AcknowledgementTranslator _translator;  // guarded by _receiving
-    std::mutex _sending;                    // guards the members below
+    AcknowledgementTranslator _translator;
+    std::mutex _sending;  // guards the members below
     SocketOutput _output;
     AnnouncementPace _announcements;
     RequestPace _requests;
