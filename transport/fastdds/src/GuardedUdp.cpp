@@ -14,6 +14,7 @@
 #include "KeyAddressees.h"
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
+#include "ShortenedDatagram.h"
 #include "SocketOutput.h"
 #include "VendorInput.h"
 #include "common/HeldDatagrams.h"
@@ -33,10 +34,6 @@ using rtps::TransportReceiverInterface;
 
 namespace
 {
-
-// Larger datagrams keep their INFO_DST: the copy without it costs more than the 16 bytes, which are less
-// than half a percent of them.
-constexpr std::size_t LargestShortened = 4096;
 
 // How long a socket may take for a datagram that the vendor does not send at this moment. A socket that does
 // not block takes no time.
@@ -121,28 +118,26 @@ public:
               rtps::LocatorsIterator &end, const std::chrono::steady_clock::time_point &timeout) override
     {
         rtps::SenderResource *const sender = &to;
-        std::span<const std::uint8_t> datagram = whole.first(SizeWithoutStatistics(whole));
-        const bool hasStatistics = datagram.size() < whole.size();
-        _guard.Sending(datagram);
-        OutgoingMessage message = ReadOutgoing(datagram);
+        ShortenedDatagram datagram(whole, _copy);
+        _guard.Sending(datagram.Bytes());
+        OutgoingMessage message = ReadOutgoing(datagram.Bytes());
         message.HasSamples = message.HasSamples || SendingSamples::Now();
-        if (!message.HasSamples && PutExchange(sender, datagram, begin, end))
+        if (!message.HasSamples && PutExchange(sender, datagram.Bytes(), begin, end))
         {
             return true;
         }
         if (message.Announcement)
         {
-            _input.NoteOwn(datagram);
+            _input.NoteOwn(datagram.Bytes());
         }
         const std::lock_guard lock(_sending);
         if (message.Announcement && _descriptor.Chosen().Mode == RtpsGuard::Mode::Full)
         {
-            WriteWithoutProperties(datagram, _shortened);
-            datagram = _shortened;
+            datagram.LeaveOutProperties();
         }
-        if (Meeting() != nullptr && !message.HasSamples && Meeting()->Sending(datagram))
+        if (Meeting() != nullptr && !message.HasSamples && Meeting()->Sending(datagram.Bytes()))
         {
-            NoteRoute(sender, datagram, begin, end);
+            NoteRoute(sender, datagram.Bytes(), begin, end);
             return true;
         }
         const auto now = std::chrono::steady_clock::now();
@@ -180,26 +175,13 @@ public:
         {
             _output.ChooseGroupWhereAddressesLack(sender, message.IsOfSamplesToOne, now, _chosen);
         }
-        if (message.IsOfSamplesToOne && datagram.size() <= LargestShortened &&
-            std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
+        if (message.IsOfSamplesToOne && std::none_of(_chosen.begin(), _chosen.end(), IsGroup))
         {
-            WriteWithoutDestination(datagram, _shortened);
-            datagram = _shortened;
+            datagram.LeaveOutDestination();
         }
-        if (hasStatistics && EndsLikeStatistics(datagram))
-        {
-            // The socket would write its statistics into this end, so the message keeps those that it has.
-            if (datagram.data() == whole.data())
-            {
-                datagram = whole;
-            }
-            else
-            {
-                Append(_shortened, whole.last(StatisticsSize));
-                datagram = _shortened;
-            }
-        }
-        return Hold(sender, datagram) || _output.Send(sender, _chosen, datagram, message.HasSamples, timeout);
+        datagram.PutBackStatistics();
+        return Hold(sender, datagram.Bytes()) ||
+               _output.Send(sender, _chosen, datagram.Bytes(), message.HasSamples, timeout);
     }
 
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
@@ -395,8 +377,8 @@ private:
     AnnouncementPace _announcements;
     RequestPace _requests;
     HeartbeatPace _heartbeats;
-    SocketOutput::Destinations _chosen;    // of the datagram to send
-    std::vector<std::uint8_t> _shortened;  // the datagram to send, if shorter than the vendor's
+    SocketOutput::Destinations _chosen;  // of the datagram to send
+    std::vector<std::uint8_t> _copy;     // of ShortenedDatagram
 };
 
 }  // namespace
