@@ -32,6 +32,8 @@ MUTATIONS = [
           "bool hasStatistics = EndsLikeStatistics(datagram);"),
     Mutation("the vendor writes its statistics into a sample", FASTDDS + "ShortenedDatagram.cpp",
              "if (_statistics.empty() || !EndsLikeStatistics(_bytes))", "if (!_statistics.empty())", "fastdds_paces_test:GuardedUdpTest*"),
+    Mutation("an announcement is lost where no receiver is", FASTDDS + "VendorInput.cpp", "if (receiver.Next == nullptr)",
+             "if (false)", "fastdds_paces_test:VendorInputTest*"),
     guard("blanking changes the length", "RtpsMessage.cpp",
           "Write(submessage.Whole.subspan(2, 2), submessage.Body().size(), submessage.LittleEndian);",
           "Write(submessage.Whole.subspan(2, 2), 0, submessage.LittleEndian);"),

@@ -83,6 +83,18 @@ void VendorInput::HandOnAsProtected(const Receiver &receiver, const GuidPrefix &
     AsProtected(own, peer, [&] { HandOn(receiver, message); });
 }
 
+void VendorInput::HandOnAnnouncement(const Receiver &receiver, const GuidPrefix &peer)
+{
+    if (receiver.Next == nullptr)
+    {
+        return;  // the announcement stays until there is a receiver
+    }
+    if (auto announcement = _introductions.Take(peer); !announcement.empty())
+    {
+        HandOnAsProtected(receiver, peer, announcement);
+    }
+}
+
 void VendorInput::Deliver(const Receiver &receiver, std::span<std::uint8_t> admitted)
 {
     if (_introduces && _introductions.Read(admitted) == Introductions::Message::Goodbye)
@@ -101,13 +113,9 @@ void VendorInput::Introduce(std::span<const std::uint8_t> datagram)
         return;
     }
     const GuidPrefix own = OwnPrefix();
-    if (own == GuidPrefix{} || !KeyAddressees::IsAuthenticated(own, peer))
+    if (own != GuidPrefix{} && KeyAddressees::IsAuthenticated(own, peer))
     {
-        return;
-    }
-    if (auto announcement = _introductions.Take(peer); !announcement.empty())
-    {
-        HandOnAsProtected(DiscoveryReceiver(), peer, announcement);
+        HandOnAnnouncement(DiscoveryReceiver(), peer);
     }
 }
 
@@ -116,10 +124,7 @@ void VendorInput::Forget(const GuidPrefix &peer, std::span<std::uint8_t> goodbye
     const Receiver receiver = DiscoveryReceiver();
     // A vendor that waits for protected announcements heeds a goodbye only of participants of which it has
     // had one. Otherwise it would remember a failed handshake for good.
-    if (auto announcement = _introductions.Take(peer); !announcement.empty())
-    {
-        HandOnAsProtected(receiver, peer, announcement);
-    }
+    HandOnAnnouncement(receiver, peer);
     HandOnAsProtected(receiver, peer, goodbye);
 }
 

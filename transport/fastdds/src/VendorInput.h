@@ -67,6 +67,8 @@ public:
 private:
     void HandOnAsProtected(const Receiver &receiver, const Rtps::GuidPrefix &peer,
                            std::span<std::uint8_t> message);
+    // Hands over the last announcement of a participant, once, if there is a receiver.
+    void HandOnAnnouncement(const Receiver &receiver, const Rtps::GuidPrefix &peer);
 
     const std::uint32_t _groupPort;
     const bool _introduces;
