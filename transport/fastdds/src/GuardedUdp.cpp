@@ -39,6 +39,13 @@ namespace
 // not block takes no time.
 constexpr std::chrono::milliseconds SocketTimeout{100};
 
+// Orders the steps of a datagram: from the vendor to a socket (Send), and from a socket to the vendor
+// (receive).
+//
+// The vendor calls Send on any thread, and receive on a thread for each port, at once. `_sending` guards all
+// that chooses and counts what is sent. It is held while a datagram goes to the sockets, the meeting
+// (MeetingThread::Sending), OnSent and AnnounceAt. No other callback is called with it held: a key exchange,
+// for instance, may send on the thread that puts it.
 class GuardedUdp final : public ChainedUdp
 {
 public:

@@ -4,10 +4,11 @@
 // - The guard filters what the vendor's parser reads, and acknowledgements of a peer that had lost us are put
 //   into the vendor's form (RtpsGuard.h, AcknowledgementTranslator.h).
 // - Multicast groups that peers name are not sent to where multicast may not pass.
-// - The vendor's statistics are not sent, but for one message of 256.
+// - The vendor's statistics are not sent, but for one message of 256 (ShortenedDatagram.h).
 // - Datagrams that the vendor repeats too quickly, or sends to each peer by itself, are rate-limited
 //   (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/KeyExchangeOutbox.h) or replaced by cards
 //   (rtps/Meeting.h).
+// VendorInput.h hands datagrams to the vendor, SocketOutput.h gives them to the sockets.
 #pragma once
 
 #include <chrono>
