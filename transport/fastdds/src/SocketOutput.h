@@ -24,7 +24,8 @@ namespace Rabit::FastDds
 // Sends samples to a group in place of hosts that the kernel cannot send to yet (HardwareAddresses).
 //
 // Not thread-safe: GuardedUdp calls all functions with one lock held. They call the sockets, OnSent and the
-// guard. The vendor owns the sockets, and keeps them as long as the transport.
+// guard. The vendor owns the sockets. SessionCore stops all threads that use them before it removes the
+// participant.
 class SocketOutput
 {
 public:
