@@ -238,13 +238,13 @@ TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
 TEST_P(RealNodesTest, ASlowHandlerDoesNotHoldUpWhatComesNext)
 {
     using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
+    bool began = false;  // these outlive the nodes, whose threads use them
+    bool mayReturn = false;
+    bool came = false;
     Node first(GetParam().first, "first", "second", condition, {"Slow", "Next"});
     Node second(GetParam().second, "second", "first", condition);
     const auto slow = std::make_shared<Queue>(100, "Slow");
     const auto next = std::make_shared<Queue>(100, "Next");
-    bool began = false;
-    bool mayReturn = false;
-    bool came = false;
     slow->Register_SomethingEnqueued(
         [&]
         {

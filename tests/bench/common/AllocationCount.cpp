@@ -1,6 +1,7 @@
 // Counts the calls of malloc and its relatives by taking their place, so calls of the vendors' libraries
 // count too. Linked into every contestant alike, and into tests. Sanitizers bring an allocator of their own:
 // with them nothing is counted.
+#include "../../sanitizers/Sanitized.h"
 #include "Usage.h"
 
 #include <atomic>
@@ -25,7 +26,7 @@ std::uint64_t AllocationsSoFar()
 
 }  // namespace Rabit::Bench
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef RABIT_SANITIZED
 
 extern "C"
 {

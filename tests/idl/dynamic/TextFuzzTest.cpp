@@ -10,11 +10,13 @@
 #include <cstdlib>
 #include <random>
 
+#include "../../sanitizers/Sanitized.h"
+
 namespace
 {
 
 // Sanitizers take some tens of milliseconds for a text.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef RABIT_SANITIZED
 constexpr unsigned UsualRounds = 300;
 #else
 constexpr unsigned UsualRounds = 5000;

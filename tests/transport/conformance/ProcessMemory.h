@@ -7,11 +7,12 @@
 #include <cstddef>
 #include <fstream>
 
+#include "../../sanitizers/Sanitized.h"
+
 namespace Rabit::Conformance
 {
 
-// The sanitizers keep freed memory for a while, or take several bytes for each byte in use.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#ifdef RABIT_SANITIZED
 constexpr bool MemoryIsNotGivenBack = true;
 #else
 constexpr bool MemoryIsNotGivenBack = false;

@@ -77,9 +77,9 @@ TEST_P(Conformance, WhatGoesToAllByMulticastCostsOnceAndIsCounted)
 TEST_P(Conformance, SessionsWhoseDiscoveryTakesTurnsFindAllOfEachOtherByThem)
 {
     constexpr std::size_t Endpoints = 10;
+    std::atomic<int> due{0};  // outlives the sessions, whose threads count here
     const auto writing = Open("uav1");
     const auto reading = Open("ground");
-    std::atomic<int> due{0};
     for (const auto *session : {&writing, &reading})
     {
         ASSERT_NE((*session)->Discovery(), nullptr);
