@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, builds the release preset and runs all tests.
 #   tests/run.sh [ARGUMENT...]   arguments go to ctest, for instance: tests/run.sh -L core
-#   tests/run.sh --quick         only the unit tests of core, idl, transport and gateway, and one exchange of two nodes
+#   tests/run.sh --quick         only the unit tests of core, idl, transport and gateway, and two nodes over each pair of backends
 #   tests/run.sh --quick arm64   the same, compiled for arm64 and run under qemu-user: docker/README.md says what it needs
 # Without arguments all tests run, except those with the label mutation, which test the tests, and those with the labels
 # arm64_long, bare_long, bench_long, field_long, fuzz_long, package_long and soak: each set takes five minutes to some hours.
@@ -31,21 +31,21 @@ quick() {
     [ "$preset" = release ] || { under=(env "GTEST_FILTER=-*DeathTest*" qemu-aarch64) packages=arm64; }
     "$root/docker/install-packages.sh" "$root/docker/packages-$packages.txt"
     "$root/docker/build-preset.sh" "$preset" "${unit_tests[@]}" sensor display
-    local number=0 failed=0 steps=$((${#unit_tests[@]} + 1)) transport=fastdds
-    grep -q '^RABIT_WITH_FASTDDS:BOOL=OFF' "build/$preset/CMakeCache.txt" && transport=cyclonedds
+    local number=0 failed=0 steps=$((${#unit_tests[@]} + 1)) transports
+    transports=$(sed -n 's/^RABIT_WITH_\(.*DDS\):BOOL=ON$/\L\1/p' "build/$preset/CMakeCache.txt" | paste -s -d ,)
     for test in "${unit_tests[@]}"; do
         number=$((number + 1))
         step "$number" "$test" tests/whole_program.sh "${under[@]}" "build/$preset/bin/$test"
     done
-    step "$steps" "two nodes over $transport" env PYTHONDONTWRITEBYTECODE=1 python3 tests/examples/two_nodes_test.py \
-        "build/$preset/bin" "$root" "$transport" "${under[@]}"
+    step "$steps" "two nodes over each pair of $transports" env PYTHONDONTWRITEBYTECODE=1 python3 \
+        tests/examples/two_nodes_test.py "build/$preset/bin" "$root" "$transports" "${under[@]}"
     [ "$failed" -eq 0 ] || { echo "$failed of $steps failed"; exit 1; }
     echo "all passed"
 }
 
 if [ "${1:-}" = --quick ]; then
     [ $# -eq 1 ] || [ "$*" = "--quick arm64" ] || { echo "run.sh: --quick takes no other argument than arm64" >&2; exit 2; }
-    echo "The quick tests: unit tests and one exchange of two nodes. If nothing is built yet, compiling takes longest."
+    echo "The quick tests: unit tests, and two nodes over each pair of backends. If nothing is built yet, compiling takes longest."
     quick "${2:-release}"
     exit
 fi
@@ -59,4 +59,4 @@ fi
 tests=(ctest --preset release -j4 --progress "$@")
 [ ! -t 1 ] || exec "${tests[@]}"
 # One line for each test that has ended, with its number: no line for its start.
-"${tests[@]}" | { grep -Ev '^ *Start +[0-9]+: ' || true; }
+"${tests[@]}" | { grep --line-buffered -Ev '^ *Start +[0-9]+: ' || true; }
