@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, builds the release preset and runs all tests.
 #   tests/run.sh [ARGUMENT...]   arguments go to ctest, for instance: tests/run.sh -L core
-#   tests/run.sh --quick         only the unit tests of core, idl, transport and gateway, and two nodes over each pair of backends
+#   tests/run.sh --quick         only unit tests, the conformance suite of each backend, and two nodes over each pair of them
 #   tests/run.sh --quick arm64   the same, compiled for arm64 and run under qemu-user: docker/README.md says what it needs
 # Without arguments all tests run, except those with the label mutation, which test the tests, and those with the labels
 # arm64_long, bare_long, bench_long, field_long, fuzz_long, package_long and soak: each set takes five minutes to some hours.
@@ -9,7 +9,8 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 
-# The programs of unit tests; each says itself what it tests.
+# The programs of unit tests; each says itself what it tests. On this machine's processor the conformance suite of each
+# backend is run as well.
 unit_tests=(core_test idl_test idl_dynamic_test transport_common_test transport_factory_test links_rules_test links_path_test
             links_parts_test air_test gateway_parts_test gateway_nodes_test)
 
@@ -26,19 +27,26 @@ step() {
 
 # quick PRESET
 quick() {
-    local preset=$1 under=() packages=build
-    # Death tests start their own program again, which the kernel cannot do for another processor.
-    [ "$preset" = release ] || { under=(env "GTEST_FILTER=-*DeathTest*" qemu-aarch64) packages=arm64; }
+    local preset=$1 under=() packages=build transports=() programs=("${unit_tests[@]}")
+    for transport in fastdds cyclonedds; do
+        grep -qs "^RABIT_WITH_${transport^^}:BOOL=OFF" "build/$preset/CMakeCache.txt" || transports+=("$transport")
+    done
+    if [ "$preset" = release ]; then
+        programs+=("${transports[@]/%/_conformance_test}")
+    else
+        # Death tests start their own program again, which the kernel cannot do for another processor.
+        under=(env "GTEST_FILTER=-*DeathTest*" qemu-aarch64) packages=arm64
+    fi
     "$root/docker/install-packages.sh" "$root/docker/packages-$packages.txt"
-    "$root/docker/build-preset.sh" "$preset" "${unit_tests[@]}" sensor display
-    local number=0 failed=0 steps=$((${#unit_tests[@]} + 1)) transports
-    transports=$(sed -n 's/^RABIT_WITH_\(.*DDS\):BOOL=ON$/\L\1/p' "build/$preset/CMakeCache.txt" | paste -s -d ,)
-    for test in "${unit_tests[@]}"; do
+    "$root/docker/build-preset.sh" "$preset" "${programs[@]}" sensor display
+    local number=0 failed=0 steps=$((${#programs[@]} + 1)) pairs
+    pairs=$(IFS=,; echo "${transports[*]}")
+    for test in "${programs[@]}"; do
         number=$((number + 1))
         step "$number" "$test" tests/whole_program.sh "${under[@]}" "build/$preset/bin/$test"
     done
-    step "$steps" "two nodes over each pair of $transports" env PYTHONDONTWRITEBYTECODE=1 python3 \
-        tests/examples/two_nodes_test.py "build/$preset/bin" "$root" "$transports" "${under[@]}"
+    step "$steps" "two nodes over each pair of $pairs" env PYTHONDONTWRITEBYTECODE=1 python3 \
+        tests/examples/two_nodes_test.py "build/$preset/bin" "$root" "$pairs" "${under[@]}"
     [ "$failed" -eq 0 ] || { echo "$failed of $steps failed"; exit 1; }
     echo "all passed"
 }
