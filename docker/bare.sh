@@ -42,6 +42,7 @@ mmdebstrap --quiet --mode=root --variant=minbase --include=git,ca-certificates "
 mkdir "$root/rabit" "$root/ccache"
 git -C "$tree" ls-files -z | tar -C "$tree" --null -T - -c | tar -C "$root/rabit" -x
 cp /etc/resolv.conf "$root/etc/resolv.conf"
+echo "127.0.0.1 localhost" >"$root/etc/hosts" # Debian's installer writes it, mmdebstrap does not
 
 echo "bare.sh: $command" >&2
 # shellcheck disable=SC2016 # expanded inside
