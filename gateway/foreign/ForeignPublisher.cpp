@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mirrors/GapOfRate.h"
 #include "names/ForeignNames.h"
 
 namespace Rabit
@@ -44,10 +45,7 @@ ForeignPublisher::ForeignPublisher(const ForeignRule &rule, const MessageType &t
 
 ForeignPublisher::Duration ForeignPublisher::Gap() const
 {
-    const Duration gap =
-        _rule.MaxRate > 0.0
-            ? std::chrono::duration_cast<Duration>(std::chrono::duration<double>(1.0 / _rule.MaxRate))
-            : Duration(0);
+    const Duration gap = GapOfRate(_rule.MaxRate);
     return _timedOut ? std::max(gap, RetryGap) : gap;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "mirrors/GapOfRate.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
@@ -22,14 +23,10 @@ TopicPublisher::TopicPublisher(const PublishRule &rule, const MessageType &type,
 {
 }
 
-TopicPublisher::Duration TopicPublisher::MinimumGap() const
-{
-    return _rule.MaxRate > 0.0 ? Duration(static_cast<std::int64_t>(1e9 / _rule.MaxRate)) : Duration(0);
-}
-
 TopicPublisher::Duration TopicPublisher::NextGap() const
 {
-    return _timedOut ? std::max(MinimumGap(), RetryGap) : MinimumGap();
+    const Duration gap = GapOfRate(_rule.MaxRate);
+    return _timedOut ? std::max(gap, RetryGap) : gap;
 }
 
 TopicPublisher::Duration TopicPublisher::Service(Duration now)

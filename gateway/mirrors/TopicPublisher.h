@@ -82,7 +82,6 @@ private:
     void Written(Duration now);
     std::int64_t TimeOfPost() const;
     Duration ValueDueAt(Duration now) const;
-    Duration MinimumGap() const;
     Duration NextGap() const;
 
     PublishRule _rule;

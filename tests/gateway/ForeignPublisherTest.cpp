@@ -100,6 +100,21 @@ TEST_F(ForeignPublisherTest, WritesNoMoreOftenThanTheRuleAllows)
     EXPECT_EQ(network.Written.size(), 2u);
 }
 
+TEST_F(ForeignPublisherTest, TheLowestRateWritesOnceAYear)
+{
+    rule.MaxRate = 1e-300;
+    Publisher();
+    Post(3);
+    Service();
+    Post(4);
+    clock->Advance(24h * 365 - 1s);
+    Service();
+    EXPECT_EQ(network.Written.size(), 1u);
+    clock->Advance(1s);
+    Service();
+    EXPECT_EQ(network.Written.size(), 2u);
+}
+
 TEST_F(ForeignPublisherTest, TriesAgainWhatTheNetworkDidNotTake)
 {
     Publisher();

@@ -86,6 +86,26 @@ TEST(TopicPublisher, ADisposalThatTheNetworkDoesNotTakeIsTriedAgainWithoutTheVal
     EXPECT_EQ(network.Writes, 2);
 }
 
+// A conversion to nanoseconds that overflows gives another result on another processor.
+TEST(TopicPublisher, TheLowestRateWritesOnceAYear)
+{
+    Network network;
+    Session session(network);
+    const PublishRule rule{
+        .Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry, .MaxRate = 1e-300};
+    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
+    RabitWorkspace workspace;
+    auto pose = std::make_shared<Uav::Pose>();
+    workspace.AddPublishSubscribeMessage("Pose", pose);
+    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    publisher.SetAttached();
+    pose->PostMessage();
+    publisher.Service(10s);
+    pose->PostMessage();
+    EXPECT_EQ(publisher.Service(11s), 10s + 24h * 365);
+    EXPECT_EQ(network.Writes, 1);
+}
+
 TEST(TopicPublisher, ANewerPostReplacesTheOneThatWaitsAndIsCounted)
 {
     Network network;
