@@ -20,6 +20,7 @@ from interop_test import Row, print_table  # noqa: E402
 from secured_pairs_test import Fleet  # noqa: E402
 
 AT_ONCE = 4  # pairs of nodes
+AT_ONCE_ARM64 = 1  # an emulated node takes about ten times the processor time
 SKIPPED = 77
 OTHER_ROOT = "RABIT_OTHER_ROOT"
 RELEASES = {"bookworm": "trixie", "trixie": "bookworm"}
@@ -46,9 +47,9 @@ def make_root(folder, arm64):
                            BUILD_ARM64 if arm64 else BUILD], check=False).returncode
 
 
-def run(cases):
-    for i in range(0, len(cases), AT_ONCE):
-        harness.run_at_once(cases[i:i + AT_ONCE])
+def run(cases, at_once):
+    for i in range(0, len(cases), at_once):
+        harness.run_at_once(cases[i:i + at_once])
     return [f"{case.label}: {case.failure}" for case in cases if case.failure]
 
 
@@ -57,7 +58,7 @@ def labelled(case, label):
     return case
 
 
-def compare(rabit, node, root, built_node, transports):
+def compare(rabit, node, root, built_node, transports, at_once):
     here = [node]
     there = ["unshare", "--mount", "sh", "-ec", INSIDE, root, tempfile.gettempdir(), *built_node]
     pairs = [(first, second) for first in transports for second in transports]
@@ -66,10 +67,10 @@ def compare(rabit, node, root, built_node, transports):
                                                     (((here, there), "here, other"), ((there, here), "other, here")))]
     fleets = [labelled(Fleet(rabit, (here, there), pair, level, 7 * i), f"{pair} here, other {level}")
               for i, (pair, level) in enumerate((pair, level) for pair in pairs for level in ("encrypt", "sign"))]
-    failures = run(rows)
+    failures = run(rows, at_once)
     print("By turns the first node is of this machine, and of the other root:")
     print_table(rows)
-    failures += run(fleets)
+    failures += run(fleets, at_once)
     print(f"{len(fleets)} fleets with keys, {sum(1 for fleet in fleets if fleet.failure)} failed")
     print("\n".join(failures))
     return 1 if failures else 0
@@ -84,7 +85,8 @@ def main():
     if OTHER_ROOT in os.environ:
         harness.enter_namespace()
         sys.exit(compare(rabit, node, os.environ[OTHER_ROOT],
-                         BUILT_NODE_ARM64 if arm64 else BUILT_NODE, transports))
+                         BUILT_NODE_ARM64 if arm64 else BUILT_NODE, transports,
+                         AT_ONCE_ARM64 if arm64 else AT_ONCE))
     with tempfile.TemporaryDirectory(prefix="rabit_versions_") as folder:
         code = make_root(folder, arm64)
         if code != 0:
