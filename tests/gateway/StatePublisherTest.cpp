@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "OneWriterNetwork.h"
+#include "TelemetryPublisher.h"
 #include "mirrors/TopicPublisher.h"
 #include "uav.idl.h"
 
@@ -277,14 +278,8 @@ TEST_F(StatePublisherTest, NothingIsRepeatedMoreOftenThanTheRuleAllows)
 
 TEST(TopicPublisher, TelemetryHasNoVersionAndIsNotRepeated)
 {
-    Network network;
-    Session session(network);
-    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
-    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
-    RabitWorkspace workspace;
-    auto pose = std::make_shared<Uav::Pose>();
-    workspace.AddPublishSubscribeMessage("Pose", pose);
-    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    TelemetryPublisher telemetry;
+    auto &[network, session, publisher, workspace, pose] = telemetry;
     publisher.SetAttached();
     pose->PostMessage();
     publisher.Service(10s);

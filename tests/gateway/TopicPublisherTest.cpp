@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "OneWriterNetwork.h"
+#include "TelemetryPublisher.h"
 #include "keyed.idl.h"
 #include "uav.idl.h"
 
@@ -24,14 +25,8 @@ using OneWriter::Session;
 // Without a network a write ends at once: without a gap the gateway's thread would do nothing but write.
 TEST(TopicPublisher, WhatTheNetworkDoesNotTakeIsTriedAgainAfterAGap)
 {
-    Network network;
-    Session session(network);
-    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
-    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
-    RabitWorkspace workspace;
-    auto pose = std::make_shared<Uav::Pose>();
-    workspace.AddPublishSubscribeMessage("Pose", pose);
-    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    TelemetryPublisher telemetry;
+    auto &[network, session, publisher, workspace, pose] = telemetry;
     publisher.SetAttached();
     pose->PostMessage();
 
@@ -89,15 +84,8 @@ TEST(TopicPublisher, ADisposalThatTheNetworkDoesNotTakeIsTriedAgainWithoutTheVal
 // A conversion to nanoseconds that overflows gives another result on another processor.
 TEST(TopicPublisher, TheLowestRateWritesOnceAYear)
 {
-    Network network;
-    Session session(network);
-    const PublishRule rule{
-        .Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry, .MaxRate = 1e-300};
-    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
-    RabitWorkspace workspace;
-    auto pose = std::make_shared<Uav::Pose>();
-    workspace.AddPublishSubscribeMessage("Pose", pose);
-    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    TelemetryPublisher telemetry(1e-300);
+    auto &[network, session, publisher, workspace, pose] = telemetry;
     publisher.SetAttached();
     pose->PostMessage();
     publisher.Service(10s);
@@ -108,14 +96,8 @@ TEST(TopicPublisher, TheLowestRateWritesOnceAYear)
 
 TEST(TopicPublisher, ANewerPostReplacesTheOneThatWaitsAndIsCounted)
 {
-    Network network;
-    Session session(network);
-    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
-    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
-    RabitWorkspace workspace;
-    auto pose = std::make_shared<Uav::Pose>();
-    workspace.AddPublishSubscribeMessage("Pose", pose);
-    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    TelemetryPublisher telemetry;
+    auto &[network, session, publisher, workspace, pose] = telemetry;
     pose->PostMessage();
     pose->PostMessage();
     publisher.SetAttached();  // the last post before is a value, those before it were never to be sent
@@ -136,14 +118,8 @@ TEST(TopicPublisher, ANewerPostReplacesTheOneThatWaitsAndIsCounted)
 
 TEST(TopicPublisher, AValueThatTheNetworkDidNotTakeIsReplacedByANewerOne)
 {
-    Network network;
-    Session session(network);
-    const PublishRule rule{.Message = "Pose", .Type = "Uav::Pose", .Qos = QosProfile::Telemetry};
-    TopicPublisher publisher(rule, Uav::Pose::IdlType(), "uav1", SourceClock(ManualClock()), session);
-    RabitWorkspace workspace;
-    auto pose = std::make_shared<Uav::Pose>();
-    workspace.AddPublishSubscribeMessage("Pose", pose);
-    workspace.AddPublishSubscribeMessage("Pose", publisher.Local());
+    TelemetryPublisher telemetry;
+    auto &[network, session, publisher, workspace, pose] = telemetry;
     publisher.SetAttached();
     pose->PostMessage();
     network.Result = WriteResult::TimedOut;
