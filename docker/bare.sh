@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Runs the two commands of the README in a fresh Debian, in which only git is installed, and removes it again. The second
-# is ./tests/run.sh with all its tests; those that need a browser or containers are skipped there.
-#   docker/bare.sh [--ccache FOLDER] [--keep FOLDER] RELEASE [COMMAND]   RELEASE: bookworm (Debian 12) or trixie (Debian 13)
-# COMMAND is run in a copy of this tree, in place of the two. --ccache: the compiler's cache, for repeated runs; without it
-# all is compiled. --keep: the Debian is made in FOLDER/root, with the copy in /rabit, and stays. Needs root, mmdebstrap
-# and a mirror of Debian. The traffic stays on the loopback of this machine.
+# Runs the two commands of the README in a fresh Debian, in which only git is installed, and removes it again.
+#   docker/bare.sh [--ccache FOLDER | --own-ccache] [--keep FOLDER] RELEASE [COMMAND]
+# RELEASE: bookworm (Debian 12) or trixie (Debian 13). COMMAND is run in a copy of this tree, in place of the two. --ccache:
+# the compiler's cache, for repeated runs; --own-ccache: that of this machine's compiler; without them all is compiled.
+# --keep: the Debian is made in FOLDER/root, with the copy in /rabit, and stays. Needs root, mmdebstrap and a mirror of
+# Debian. The traffic stays on the loopback of this machine.
 # Exit code: that of the first command that fails; 77 if this machine cannot make a root.
 set -euo pipefail
 tree=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -15,7 +15,12 @@ usage() {
     sed -n '2,8s/^# \?//p' "${BASH_SOURCE[0]}" >&2
     exit 2
 }
-while [ "${1:-}" = --ccache ] || [ "${1:-}" = --keep ]; do
+while [ "${1:-}" = --ccache ] || [ "${1:-}" = --keep ] || [ "${1:-}" = --own-ccache ]; do
+    if [ "$1" = --own-ccache ]; then
+        cache=$(ccache --get-config=cache_dir) && mkdir -p "$cache"
+        shift
+        continue
+    fi
     [ $# -ge 2 ] || usage
     given=$(cd "$2" && pwd)
     if [ "$1" = --ccache ]; then cache=$given; else folder=$given; fi

@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing, builds the release preset and runs all tests.
-#   tests/run.sh [ARGUMENT...]   arguments go to ctest, for instance: tests/run.sh -L core
+# Installs the Debian packages that are missing, builds the release preset and runs the gate's tests.
+#   tests/run.sh                 the gate's tests: no clock decides them, so they pass on any machine
+#   tests/run.sh --all           these, and then all parts of the night (tests/night/README.md): some ten hours
+#   tests/run.sh ARGUMENT...     builds everything; the arguments go to ctest, for instance: tests/run.sh -L core
 #   tests/run.sh --quick         only unit tests, the conformance suite of each backend, and two nodes over each pair of them
 #   tests/run.sh --quick arm64   the same, compiled for arm64 and run under qemu-user: docker/README.md says what it needs
-# Without arguments all tests run, except those with the label mutation, which test the tests, and those with the labels
-# arm64_long, bare_long, bench_long, field_long, fuzz_long, package_long and soak: each set takes five minutes to some hours.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
@@ -57,14 +57,24 @@ if [ "${1:-}" = --quick ]; then
     quick "${2:-release}"
     exit
 fi
-if [ $# -eq 0 ]; then
-    echo "All tests: about 20 minutes on two cores, and 30 more if nothing is built yet. --quick: a part of them."
-    set -- -LE 'mutation|arm64_long|bare_long|bench_long|field_long|fuzz_long|package_long|soak'
+targets=()
+if [ $# -eq 0 ] || [ "$*" = --all ]; then
+    echo "The tests of the gate. If nothing is built yet, compiling takes longest. --quick: a part of them; --all: all tests there are."
+    targets=(gate_tests)
 fi
+all=${1:-}
+[ "$all" != --all ] || shift
+[ ${#targets[@]} -eq 0 ] || set -- -L '^gate$'
 "$root/docker/install-packages.sh"
-"$root/docker/install-packages.sh" "$root/docker/packages-check.txt" "$root/docker/packages-pack.txt"
-"$root/docker/build-preset.sh" release
-tests=(ctest --preset release -j4 --progress "$@")
-[ ! -t 1 ] || exec "${tests[@]}"
-# One line for each test that has ended, with its number: no line for its start.
-"${tests[@]}" | { grep --line-buffered -Ev '^ *Start +[0-9]+: ' || true; }
+"$root/docker/build-preset.sh" release "${targets[@]}"
+junit=$root/build/release/Testing/tests.xml
+tests=(ctest --preset release -j3 --progress --no-tests=error --output-junit "$junit" "$@")
+result=0
+if [ -t 1 ]; then
+    "${tests[@]}" || result=$?
+else # One line for each test that has ended, with its number: no line for its start.
+    "${tests[@]}" | { grep --line-buffered -Ev '^ *Start +[0-9]+: ' || true; } || result=$?
+fi
+python3 tests/skipped.py "$junit"
+[ "$all" != --all ] || .ci/night all || result=$?
+exit "$result"

@@ -5,8 +5,9 @@ import pathlib
 import sys
 import time
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
+sys.path[:0] = [str(pathlib.Path(__file__).resolve().parents[2] / "integration"), str(pathlib.Path(__file__).resolve().parents[2])]
 import harness  # noqa: E402
+import quiet  # noqa: E402,F401  for the programs of this folder
 
 # Only keeps a broken run from hanging.
 LIMIT_S = 300

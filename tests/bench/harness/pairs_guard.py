@@ -5,8 +5,8 @@ Usage: pairs_guard.py [--update] [--only TEXT] [--rounds N] PROGRAMS
 
 Raw and Rabit run in turns, and the ratio of each pair of neighbours counts: what disturbs the machine disturbs both.
 judged.py decides. The exit code is 1 if a ratio got worse, 77 if none did and one could not be judged, else 0. --update
-writes the ratios that were measured closely as the new ones. Ratios of a busy machine, whose threads wait for each
-other, are others than those of a quiet one: each is compared with its own kind.
+writes the ratios that were measured closely as the new ones. Nothing is measured while other programs compute
+(tests/quiet.py): a busy machine has other ratios.
 
 A sleeping processor wakes up late, which hides work. So while this measures, a process of the lowest priority keeps
 each processor awake; it takes no time from others."""
@@ -23,7 +23,7 @@ import contestants
 import judged
 import plan
 import report
-from contestants import NODE, RAW_WORKER
+from contestants import NODE, RAW_WORKER, quiet
 from run import run_once
 
 WRITTEN = pathlib.Path(__file__).resolve().parent.parent / "results" / "guard.json"
@@ -75,11 +75,10 @@ def main():
     parser.add_argument("programs", type=pathlib.Path)
     arguments = parser.parse_args()
     contestants.harness.enter_namespace()
-    # Before the processes below, which count, too.
-    kind = "busy" if os.getloadavg()[0] >= os.cpu_count() else "quiet"
+    quiet.refuse_noise("a ratio")
+    load = quiet.Load()
     programs = contestants.Contestants(arguments.programs, contestants.harness.domain())
-    written = json.loads(WRITTEN.read_text()) if WRITTEN.exists() else {}
-    of_kind = written.setdefault(kind, {"ratios": {}})
+    written = json.loads(WRITTEN.read_text()) if WRITTEN.exists() else {"ratios": {}}
     cases = {case.key(): case for case in plan.all_cases(programs.transports, SCALE)}
     verdicts = set()
     print("| what | written | now | verdict |\n|---|---|---|---|")
@@ -90,7 +89,7 @@ def main():
                 if arguments.only not in key:
                     continue
                 found = ratios(programs, cases[key], names, arguments.rounds)
-                was = {name: of_kind["ratios"].get(f"{key}, {name}") for name in names}
+                was = {name: written["ratios"].get(f"{key}, {name}") for name in names}
                 if any(judged.verdict(was[name], found[name]) in (judged.WORSE, judged.UNDECIDED) for name in names):
                     more = ratios(programs, cases[key], names, 2 * arguments.rounds)
                     found = {name: found[name] + more[name] for name in names}
@@ -101,10 +100,10 @@ def main():
                     print(f"| {key}, {name} | {was[name] or '-'} | {middle:.2f} ({low:.2f} to {high:.2f}) | {verdict} |",
                           flush=True)
                     if arguments.update and judged.is_close(found[name]):
-                        of_kind["ratios"][f"{key}, {name}"] = round(middle, 2)
-    print(f"\nThis machine is {kind} (load {os.getloadavg()[0]:.1f}); written at {of_kind.get('machine')}")
+                        written["ratios"][f"{key}, {name}"] = round(middle, 2)
+    print(f"\nWritten at {written.get('machine')}")
     if arguments.update:
-        of_kind["machine"] = report.machine()
+        written["machine"] = report.machine(load)
         WRITTEN.write_text(json.dumps(written, indent=1) + "\n")
         return 0
     return 1 if judged.WORSE in verdicts else 0 if verdicts - {judged.UNKNOWN} == {judged.GOOD} else SKIPPED

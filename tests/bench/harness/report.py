@@ -16,14 +16,15 @@ median = statistics.median
 NAMES = fleet_report.NAMES
 
 
-def machine():
+def machine(load):
+    """Where and when figures were measured; `load`: a quiet.Load that began with the measurement."""
     processor = next((line.partition(":")[2].strip() for line in pathlib.Path("/proc/cpuinfo").read_text().splitlines()
                       if line.startswith("model name")), "unknown processor")
     commit = subprocess.run(["git", "-C", pathlib.Path(__file__).parent, "rev-parse", "--short", "HEAD"],
                             capture_output=True, text=True, check=False).stdout.strip()
     return {"date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d %H:%M UTC"),
             "processor": processor, "processors": os.cpu_count(), "kernel": os.uname().release,
-            "load": round(os.getloadavg()[1], 1), "commit": commit}
+            "others": round(load.share(), 2), "commit": commit}
 
 
 class Table:
@@ -243,16 +244,16 @@ def replaced(readme, begin, text):
 class Report:
     """What was measured of one part, and where and when."""
 
-    def __init__(self, part, results, transports):
+    def __init__(self, part, results, transports, load):
         self._part = part
         self._results = results
         self._transports = transports
-        self._machine = machine()
+        self._machine = machine(load)
 
     def _where_and_when(self):
         where = self._machine
         return (f"{where['date']}, {where['processor']}, {where['processors']} processors, Linux {where['kernel']}, "
-                f"load {where['load']} (everything on the machine included), commit {where['commit']}, at most "
+                f"other programs used {where['others'] * 100:.0f} % of a processor, commit {where['commit']}, at most "
                 f"{self._repetitions()} repetitions of a case.\n\n")
 
     def _repetitions(self):

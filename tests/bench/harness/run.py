@@ -4,8 +4,8 @@
 Usage: run.py [--quick] [--part PART] [--only TEXT] [--repeat N] [--output FOLDER] PROGRAMS
 PROGRAMS is the folder of the programs (build/release/bin). The parts are: pairs (latency, throughput, start, idle),
 fleet and instructions. Each is written when it is complete: results/PART.json, results/PART.md and its table in
-README.md of FOLDER; without that, or with --only, the tables are printed. --quick: a short version that shows that
-everything works, whose figures mean little."""
+README.md of FOLDER; without that, or with --only, the tables are printed. Nothing is measured while other programs use 15 %
+of a processor or more. --quick: a short version that shows that everything works, whose figures mean little."""
 
 import argparse
 import collections
@@ -17,7 +17,7 @@ import fleet
 import instructions
 import plan
 import report
-from contestants import LOCAL
+from contestants import LOCAL, quiet
 
 # How long idle programs are watched, and how often each measure is repeated; measures not listed: as often as the run
 # says.
@@ -89,6 +89,8 @@ def main():
     parser.add_argument("programs", type=pathlib.Path)
     arguments = parser.parse_args()
     contestants.harness.enter_namespace()
+    if not arguments.quick:
+        quiet.refuse_noise("a table")
     programs = contestants.Contestants(arguments.programs, contestants.harness.domain())
     if not instructions.available():
         print("no valgrind: no instructions are counted", flush=True)
@@ -101,8 +103,9 @@ def main():
         of_part = [case for case in cases if case.part() == part and arguments.part in (None, part)]
         if not of_part:
             continue
+        load = quiet.Load()
         results = measure(programs, of_part, repetitions, QUICK_WATCHED_S if arguments.quick else WATCHED_S)
-        made = report.Report(part, results, programs.transports)
+        made = report.Report(part, results, programs.transports, load)
         if arguments.output is None or arguments.only:
             print(made.markdown())
         else:

@@ -1,0 +1,32 @@
+#!/usr/bin/env python3
+"""Prints one line for each test that was skipped, with the reason that it gave.
+
+  skipped.py JUNIT...   files that `ctest --output-junit` wrote"""
+
+import re
+import sys
+import xml.etree.ElementTree as xml
+
+
+def reason_of(case):
+    """The reason of a skipped test in ctest's junit format: its last line "skipped: REASON", or what GTEST_SKIP was told."""
+    output = case.findtext("system-out") or ""
+    said = re.findall(r"skipped: (.*)$|: Skipped\n(.+)$", output, re.MULTILINE)
+    return next((word.strip() for pair in said[-1:] for word in pair if word.strip()), "")
+
+
+def skipped(junit):
+    """(name, reason) of each skipped test."""
+    return [(case.get("name"), reason_of(case)) for case in xml.parse(junit).getroot().iter("testcase")
+            if case.find("skipped") is not None or case.get("status") in ("notrun", "disabled")]
+
+
+def main(files):
+    for file in files:
+        for name, reason in skipped(file):
+            print(f"skipped: {name}: {reason or 'it does not say why'}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
