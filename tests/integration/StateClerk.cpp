@@ -18,8 +18,8 @@ std::string NameOf(std::size_t state)
 
 }  // namespace
 
-StateClerk::StateClerk(const StateOptions &options)
-    : RabitManager("StateClerk"), _options(options), _ledger(options.LedgerFile)
+StateClerk::StateClerk(const StateOptions &options, const Orders &orders)
+    : RabitManager("StateClerk"), _options(options), _orders(orders), _ledger(options.LedgerFile)
 {
     AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
     for (std::size_t i = 0; i < _options.Count && _options.Posts > 0; ++i)
@@ -79,7 +79,8 @@ void StateClerk::FollowFleet()
 
 void StateClerk::Post()
 {
-    if (_own.empty() || _posts >= _options.Posts * _own.size() || Now() < _nextPost)
+    const std::uint64_t wanted = (_options.Posts + _orders.States()) * _own.size();
+    if (_posts >= wanted || Now() < _nextPost)
         return;
     _nextPost = Now() + _options.PeriodNs / static_cast<std::int64_t>(_own.size());
     const std::size_t which = _posts++ % _own.size();

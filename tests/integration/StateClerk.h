@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "LedgerFile.h"
+#include "Orders.h"
 #include "gateway.idl.h"
 #include "ledger.idl.h"
 
@@ -33,7 +34,8 @@ struct StateOptions
 class StateClerk : public Rabit::RabitManager
 {
 public:
-    explicit StateClerk(const StateOptions &options);
+    // `orders`: for more posts than the options say.
+    StateClerk(const StateOptions &options, const Orders &orders);
 
     // Adds the entries that the States need to the configuration of a gateway.
     static void Configure(const StateOptions &options, Rabit::GatewayConfig &config);
@@ -46,6 +48,7 @@ private:
     void FollowStates();
 
     const StateOptions _options;
+    const Orders &_orders;
     TestNode::LedgerFile _ledger;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::vector<std::shared_ptr<Ledger::Tick>> _own;

@@ -175,6 +175,11 @@ class Field:
                   for name in ("tx_bytes", "rx_bytes")]
         return tuple(map(int, counts))
 
+    def dropped(self, node):
+        """Packets on their way to the node that were dropped since the rules changed last."""
+        rules = run_in(self.space(node), "nft", "list", "table", "ip", "field")
+        return sum(map(int, re.findall(r"counter packets (\d+)", rules)))
+
     def space(self, name):
         return self._prefix + name
 
@@ -240,7 +245,7 @@ class Field:
         for (origin, destination), percent in self._drops.items():
             if destination == node and percent > 0:
                 share = "" if percent >= 100 else f"numgen random mod 100 < {percent} "
-                rules.append(f"ip saddr {self.address(origin)} {share}drop")
+                rules.append(f"ip saddr {self.address(origin)} {share}counter drop")
         text = ("add table ip field\ndelete table ip field\ntable ip field {\n chain arriving {\n"
                 "  type filter hook input priority 0;\n  " + "\n  ".join(rules) + "\n }\n}\n")
         run_in(self.space(node), "nft", "-f", "-", text=text)

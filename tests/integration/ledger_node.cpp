@@ -1,6 +1,7 @@
 // A node that writes a line for each event that it causes or sees, for judge.py. README.md lists the lines.
 // Each line is one write(2), so a kill loses at most the line being written.
 #include "LedgerFile.h"
+#include "Orders.h"
 #include "Padding.h"
 #include "PictureClerk.h"
 #include "StateClerk.h"
@@ -58,13 +59,15 @@ struct Options
     TestNode::PictureOptions Pictures;
     bool TakesPictures = false;
     TestNode::StateOptions States;
+    bool TakesOrders = false;
+    TestNode::Orders Orders;
 };
 
 // Sends notes, takes notes, and follows the ticks and the fleet.
 class Clerk : public Rabit::RabitManager
 {
 public:
-    explicit Clerk(const Options &options)
+    explicit Clerk(Options &options)
         : RabitManager("Clerk"),
           _options(options),
           _ledger(options.LedgerFile),
@@ -80,10 +83,7 @@ public:
             _tick->padding.assign(options.TickPayload, 0x5a);
         }
         SetWakeupTimeDelayMSec(WorkPeriodMSec);
-    }
-
-    void Startup() override
-    {
+        // Before any manager runs: other managers write lines of this life, too.
         std::ostringstream line;
         line << "start node=" << _options.Gateway.Node << " life=" << _life
              << " room=" << _options.QueueRoom + static_cast<int>(_options.Window);
@@ -94,6 +94,8 @@ public:
     {
         if (_fleet->FetchMessage())
             FollowFleet();
+        if (_options.TakesOrders)
+            _options.Orders.Read();
         Send();
         FollowReceipts();
         Take();
@@ -131,7 +133,7 @@ private:
             if (row.Start == 0)
                 row.Start = Now();
             const double due = static_cast<double>(Now() - row.Start) * 1e-9 * _options.Rate;
-            while (row.Sent < _options.Count && static_cast<double>(row.Sent) < due)
+            while (row.Sent < _options.Count + _options.Orders.Notes() && static_cast<double>(row.Sent) < due)
                 if (!SendOne(to, row))
                     break;
         }
@@ -265,7 +267,7 @@ private:
         }
     }
 
-    const Options &_options;
+    Options &_options;
     LedgerFile _ledger;
     std::int64_t _life;
     std::shared_ptr<RabitQueue> _notes;
@@ -312,6 +314,7 @@ void Describe(CLI::App &app, Options &o)
     app.add_option("--state-dir", o.Gateway.StateDir);
     app.add_option("--to", o.To, "Node to send notes to");
     app.add_option("--count", o.Count, "Notes to have accepted by each of these nodes' links");
+    app.add_flag("--orders", o.TakesOrders, "More notes and posts of States, by lines on standard input");
     app.add_option("--rate", o.Rate, "Notes a second to each");
     app.add_option("--accept-from", o.AcceptFrom, "Nodes whose notes are taken; default all");
     app.add_option("--stolen", o.Stolen, "Folder of keys that are used whoever's they are");
@@ -365,7 +368,7 @@ void Run(Options &options)
     {
         options.States.LedgerFile = options.LedgerFile;
         TestNode::StateClerk::Configure(options.States, config);
-        managers.push_back(std::make_unique<TestNode::StateClerk>(options.States));
+        managers.push_back(std::make_unique<TestNode::StateClerk>(options.States, options.Orders));
     }
     if (options.TakesPictures || !options.Pictures.To.empty())
     {

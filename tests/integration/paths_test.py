@@ -14,6 +14,7 @@ import sys
 import time
 
 import field
+import fleet_keys
 import harness
 import judge
 
@@ -65,17 +66,6 @@ def wait_for(what, limit_s):
         time.sleep(0.05)
 
 
-def make_keys(rabit, folder, transport, nodes):
-    """Returns the folder of each node's keys."""
-    field.run(rabit, "keys", "init", f"{folder}/keys")
-    for node in nodes:
-        config = pathlib.Path(folder, f"{node}.yaml")
-        config.write_text(f"node: {node}\ndomain: 0\ntransport: {transport}\n"
-                          "accept: [{queue: Notes, types: [Ledger::Note]}]\n")
-        field.run(rabit, "keys", "add", node, "--keys", f"{folder}/keys", "--config", config)
-    return {node: f"{folder}/keys/{node}" for node in nodes}
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("ledger_node")
@@ -89,7 +79,7 @@ def main():
     seconds = UP_S + options.cuts * (CUT_S + UP_S)
     count = RATE * seconds
     with TwoNetworks(["ground", "uav1"], options.modem) as ground:
-        keys = make_keys(options.keys, ground.folder, modem, ground.nodes) if options.keys else {}
+        keys = fleet_keys.make(options.keys, ground.folder, dict.fromkeys(ground.nodes, modem)) if options.keys else {}
         for node in ground.nodes:
             ground.start(node, [options.ledger_node, "--node", node, "--ledger", f"{ground.folder}/{node}.ledger",
                                 "--path", f"mesh:{mesh}:eth0", "--path",

@@ -50,9 +50,9 @@ class LedgerEnd:
             lines, newline, _ = file.read().rpartition(b"\n")
         self._offset += len(lines) + len(newline)
         for event in filter(None, map(judge.read_line, (lines + newline).decode().splitlines(keepends=True))):
-            self._follow(event)
+            self.follow(event)
 
-    def _follow(self, event):
+    def follow(self, event):
         if event.kind == "start":
             self.links = {}
             self.in_life = collections.Counter()
@@ -65,13 +65,13 @@ class LedgerEnd:
 class Fleet:
     """The nodes of a scenario and their ledgers. Its programs other than ledger nodes are started and stopped alike."""
 
-    def __init__(self, ground, program, transport, scenario):
+    def __init__(self, ground, program, transport, scenario, end=LedgerEnd):
         self.field = ground
         self._program = program
         self._transport = transport
         self._scenario = scenario
         self._nodes = scenario["nodes"]
-        self.ends = {node: LedgerEnd(self._path(node)) for node in self._nodes}
+        self.ends = {node: end(self._path(node)) for node in self._nodes}
         self._steps = collections.Counter()  # node -> seconds by which its wall clock was set forward
         self._disks = collections.Counter()  # node -> how often it was given an empty state folder
         self.ended = set()  # by themselves or by the scenario, and well

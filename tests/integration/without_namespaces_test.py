@@ -11,6 +11,7 @@ import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
 INTEROP = HERE.parent / "transport/interop"
+SMOKE = HERE.parent / "gate/smoke.py"
 SKIPPED = 77
 # Without the first no namespace can be made; without the second no device in it.
 CAPABILITIES = ("sys_admin", "net_admin")
@@ -25,7 +26,9 @@ def main():
     tests = [[HERE / "field_cleanup_test.py", ledger_node], [HERE / "radio_test.py", radio],
              [HERE / "run_scenario.py", "--ledger-node", ledger_node, scenarios / "baseline"],
              [HERE / "run_scenario.py", "--ledger-node", ledger_node, "--radio", radio, scenarios / "radio"],
-             [HERE / "soak.py", "--ledger-node", ledger_node], [INTEROP / "late_network_test.py", ledger_node, "fastdds"],
+             [HERE / "soak.py", "--ledger-node", ledger_node],
+             [SMOKE, "--ledger-node", ledger_node, "--rabit", "", "--transports", "fastdds", "--logs", ""],
+             [INTEROP / "late_network_test.py", ledger_node, "fastdds"],
              [INTEROP / "outage_test.py", ledger_node, "fastdds"],
              [INTEROP / "suspension_test.py", ledger_node, "1", "fastdds"]]
     failed = 0
