@@ -108,9 +108,14 @@ class Running(unittest.TestCase):
     def test_an_outcome_is_read_with_the_reason_of_a_skip(self):
         self.assertEqual(self.outcome('<testcase name="a" status="run"/>'), ("passed", ""))
         self.assertEqual(self.outcome('<testcase name="a" status="fail"><failure/></testcase>'), ("failed", ""))
-        self.assertEqual(self.outcome('<testcase name="a" status="notrun"><skipped/><system-out>x\nskipped: no npm; install npm\n'
+        mark = '<skipped message="SKIP_RETURN_CODE=77"/>'
+        self.assertEqual(self.outcome(f'<testcase name="a" status="notrun">{mark}<system-out>x\nskipped: no npm; install npm\n'
                                       '</system-out></testcase>'), ("skipped", "no npm; install npm"))
-        self.assertEqual(self.outcome('<testcase name="a" status="notrun"><skipped/></testcase>'), ("skipped", ""))
+        self.assertEqual(self.outcome(f'<testcase name="a" status="notrun">{mark}</testcase>'), ("skipped", ""))
+
+    def test_a_test_whose_program_is_missing_has_failed(self):
+        self.assertEqual(self.outcome('<testcase name="a" status="notrun"><skipped message="Unable to find executable"/></testcase>'),
+                         ("failed", ""))
 
     def test_a_test_that_ctest_did_not_find_has_failed(self):
         self.assertEqual(self.outcome("")[0], "failed")

@@ -82,7 +82,7 @@ def outcome_of(junit):
         return "failed", "ctest did not run it"
     if case.get("status") == "run":
         return "passed", ""
-    if case.find("skipped") is not None or case.get("status") in ("notrun", "disabled"):
+    if skipped.is_skipped(case):
         return "skipped", skipped.reason_of(case)
     return "failed", ""
 
