@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, builds the release preset and runs the gate's tests.
 #   tests/run.sh                 the gate's tests: no clock decides them, so they pass on any machine
-#   tests/run.sh --all           these, and then all parts of the night (tests/night/README.md): some ten hours
+#   tests/run.sh --all           these, and then all parts of the night (tests/night/README.md): many hours
 #   tests/run.sh ARGUMENT...     builds everything; the arguments go to ctest, for instance: tests/run.sh -L core
 #   tests/run.sh --quick         only unit tests, the conformance suite of each backend, and two nodes over each pair of them
 #   tests/run.sh --quick arm64   the same, compiled for arm64 and run under qemu-user: docker/README.md says what it needs
@@ -66,6 +66,7 @@ all=${1:-}
 [ "$all" != --all ] || shift
 [ ${#targets[@]} -eq 0 ] || set -- -L '^gate$'
 "$root/docker/install-packages.sh"
+[ ${#targets[@]} -gt 0 ] || "$root/docker/install-packages.sh" "$root/docker/packages-check.txt" "$root/docker/packages-pack.txt"
 "$root/docker/build-preset.sh" release "${targets[@]}"
 junit=$root/build/release/Testing/tests.xml
 tests=(ctest --preset release -j3 --progress --no-tests=error --output-junit "$junit" "$@")
