@@ -56,6 +56,12 @@ class Flight:
         self.ordered[node], self.states[node] = 0, 1
         self.fleet.start(node)
 
+    def gather(self, nodes=None):
+        """Starts the nodes, and waits until they have met."""
+        for node in nodes or self.nodes:
+            self.start(node)
+        self.meet(nodes)
+
     def kill(self, node):
         self.keep_output(node)
         self.ground.kill(node)
@@ -130,9 +136,7 @@ class Flight:
 def loss(flight):
     """A fifth of all packets is lost, from before the nodes start."""
     flight.ground.lose(LOST_PERCENT)
-    for node in flight.nodes:
-        flight.start(node)
-    flight.meet()
+    flight.gather()
     for _ in range(ROUNDS):
         flight.exchange()
     for node in flight.nodes:
@@ -142,9 +146,7 @@ def loss(flight):
 def one_way(flight):
     """The second node hears nothing of the first, until it shows the first LOST. Then the way is healed."""
     first, second = flight.nodes
-    for node in flight.nodes:
-        flight.start(node)
-    flight.meet()
+    flight.gather()
     flight.exchange()
     flight.ground.lose(100, [first], [second])
     for node in flight.nodes:
@@ -160,9 +162,7 @@ def one_way(flight):
 def kill_and_return(flight):
     """Each node is killed amid commands, and returns: the second at once, the first when it is shown LOST."""
     first, second = flight.nodes
-    for node in flight.nodes:
-        flight.start(node)
-    flight.meet()
+    flight.gather()
     flight.exchange()
     for killed, other in ((second, first), (first, second)):
         for node in flight.nodes:
@@ -183,9 +183,7 @@ def kill_and_return(flight):
 def keyed(flight):
     """Two nodes with keys start and fly beside two without that have met, on one network."""
     for group in (flight.strangers, flight.nodes):
-        for node in group:
-            flight.start(node)
-        flight.meet(group)
+        flight.gather(group)
     for _ in range(ROUNDS):
         flight.exchange()
         flight.exchange(flight.strangers)
