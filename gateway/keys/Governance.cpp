@@ -43,7 +43,8 @@ std::string GovernanceText(Level level)
            "<discovery_protection_kind>" +
            kind + "</discovery_protection_kind>\n<liveliness_protection_kind>" + kind +
            "</liveliness_protection_kind>\n"
-           "<rtps_protection_kind>SIGN</rtps_protection_kind>\n<topic_access_rules>\n" +
+           "<rtps_protection_kind>SIGN_WITH_ORIGIN_AUTHENTICATION</"
+           "rtps_protection_kind>\n<topic_access_rules>\n" +
            rules + "</topic_access_rules></domain_rule></domain_access_rules></dds>\n";
 }
 

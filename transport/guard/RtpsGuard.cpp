@@ -91,6 +91,7 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
         {
             const auto size =
                 ProtectedSize(passage.Datagram.subspan(at), at == RtpsHeaderSize,
+                              _mode == Mode::Protected ? Proof::OfSender : Proof::OfMember,
                               [&](const Submessage &part) { return MayBeInProtected(part, passage); });
             if (!size)
             {

@@ -43,7 +43,8 @@ public:
         StructureOnly,
         // Like StructureOnly; sound submessages of DDS Security pass unchanged.
         Secured,
-        // Like Secured, for a domain where only participant announcements and handshakes are unprotected.
+        // Like Secured, for a domain where only participant announcements and handshakes are unprotected, and
+        // each receiver can tell which participant has protected a datagram (origin authentication).
         Protected
     };
 

@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "guard/RtpsBytes.h"
 
 namespace
 {
 
 using namespace RtpsBytes;
+using Rabit::Rtps::Proof;
 using Rabit::Rtps::ProtectedSize;
 
 constexpr std::uint8_t Body = 0x30;
@@ -37,14 +40,14 @@ Bytes Sealed(std::uint32_t said, std::size_t there)
     return Submessage(Body, Join({BigEndian(said), Bytes(there, 3)}));
 }
 
-bool IsWhole(Bytes bytes, bool wholeMessage = false)
+bool IsWhole(Bytes bytes, bool wholeMessage = false, Proof proof = Proof::OfMember)
 {
-    return ProtectedSize(bytes, wholeMessage, [](const auto &) { return true; }) == bytes.size();
+    return ProtectedSize(bytes, wholeMessage, proof, [](const auto &) { return true; }) == bytes.size();
 }
 
-bool IsUnsound(Bytes bytes, bool wholeMessage = false)
+bool IsUnsound(Bytes bytes, bool wholeMessage = false, Proof proof = Proof::OfMember)
 {
-    return !ProtectedSize(bytes, wholeMessage, [](const auto &) { return true; });
+    return !ProtectedSize(bytes, wholeMessage, proof, [](const auto &) { return true; });
 }
 
 TEST(ProtectionCheck, AnEncryptedOrSignedSubmessageIsPrefixContentAndTag)
@@ -59,7 +62,7 @@ TEST(ProtectionCheck, WhatFollowsTheTagIsLeftToTheCaller)
     Bytes group = Join({Prefix(), Sealed(40, 40), Tag()});
     const std::size_t size = group.size();
     group = Join({group, Submessage(Data, DataBody(1), 5)});
-    EXPECT_EQ(ProtectedSize(group, false, [](const auto &) { return true; }), size);
+    EXPECT_EQ(ProtectedSize(group, false, Proof::OfMember, [](const auto &) { return true; }), size);
 }
 
 TEST(ProtectionCheck, AWholeMessageIsProtectedBehindTheHeaderAlone)
@@ -76,7 +79,7 @@ TEST(ProtectionCheck, TheCallerDecidesAboutWhatTheKeyOfTheMessageAloneProtects)
     const auto asked = [](Bytes bytes, std::uint8_t refused)
     {
         std::vector<std::uint8_t> kinds;
-        const bool sound = ProtectedSize(bytes, true,
+        const bool sound = ProtectedSize(bytes, true, Proof::OfMember,
                                          [&](const Rabit::Rtps::Submessage &part)
                                          {
                                              kinds.push_back(part.Whole[0]);
@@ -100,6 +103,53 @@ TEST(ProtectionCheck, AGroupHasOneSubmessageOfAWriterOrReaderOrItsTime)
     EXPECT_TRUE(IsUnsound(Join({Prefix(), Source(Sender), Tag()})));
     EXPECT_TRUE(
         IsUnsound(Join({Prefix(MessagePrefix), Prefix(), Source(Sender), Tag(), Tag(MessagePostfix)}), true));
+}
+
+// Each member holds the common key of each other one. Fast DDS asks for a receiver's own tag only if the
+// message has some.
+TEST(ProtectionCheck, TheSenderIsProvenByTheTagOfAReceiverAlone)
+{
+    const auto message = [](const Bytes &tag) {
+        return Join({Prefix(MessagePrefix), Prefix(), Sealed(40, 40), Tag(), tag});
+    };
+    const auto encrypted = [](const Bytes &tag) {
+        return Join({Prefix(MessagePrefix), Sealed(40, 40), tag});
+    };
+    for (const Bytes &whole : {message(Tag(MessagePostfix, 2, 2)), encrypted(Tag(MessagePostfix, 1, 1))})
+    {
+        EXPECT_TRUE(IsWhole(whole, true, Proof::OfSender));
+    }
+    for (const Bytes &whole : {message(Tag(MessagePostfix)), encrypted(Tag(MessagePostfix))})
+    {
+        EXPECT_TRUE(IsWhole(whole, true, Proof::OfMember));
+        EXPECT_TRUE(IsUnsound(whole, true, Proof::OfSender));
+    }
+}
+
+// The vendor finds the key 0 where a sender has no key for a receiver; the salt alone makes it.
+TEST(ProtectionCheck, ATagUnderTheKeyZeroProvesNoSender)
+{
+    Bytes tag = Tag(MessagePostfix, 2, 2);
+    const std::size_t last = tag.size() - 20;
+    std::fill_n(tag.begin() + static_cast<std::ptrdiff_t>(last), 3, std::uint8_t{0});
+    const auto message = [&] { return Join({Prefix(MessagePrefix), Sealed(40, 40), tag}); };
+    EXPECT_TRUE(IsWhole(message(), true, Proof::OfSender));
+    tag[last + 3] = 0;
+    EXPECT_TRUE(IsUnsound(message(), true, Proof::OfSender));
+}
+
+// A unit of its own is not signed by its sender, unless its key is that of two participants.
+TEST(ProtectionCheck, OutsideOfAMessageTheKeyZeroAloneProvesTheSender)
+{
+    Bytes prefix = Prefix();
+    const auto unit = [&] { return Join({prefix, Sealed(40, 40), Tag(Postfix, 1, 1)}); };
+    EXPECT_TRUE(IsUnsound(unit(), false, Proof::OfSender));
+    EXPECT_TRUE(IsUnsound(unit(), true, Proof::OfSender));
+    std::fill_n(prefix.begin() + 4 + 4, 3, std::uint8_t{0});
+    EXPECT_TRUE(IsUnsound(unit(), true, Proof::OfSender));
+    prefix[4 + 4 + 3] = 0;
+    EXPECT_TRUE(IsWhole(unit(), false, Proof::OfSender));
+    EXPECT_TRUE(IsWhole(unit(), true, Proof::OfSender));
 }
 
 // The vendor adds up lengths that do not fit. It read a gigabyte from a datagram of a few hundred bytes: a

@@ -612,11 +612,11 @@ Bytes WithParameter(Bytes list, std::uint16_t id, const Bytes &value)
     return Join({list, Parameter(id, value), {1, 0, 0, 0}});
 }
 
-Bytes Sealed()
+Bytes Sealed(std::uint8_t key = 0)
 {
     constexpr std::uint8_t body = 0x30;
     constexpr std::uint8_t postfix = 0x32;
-    return Join({Submessage(SecurePrefix, Bytes(20)), Submessage(body, Join({{0, 0, 0, 8}, Bytes(8)})),
+    return Join({Submessage(SecurePrefix, Bytes(20, key)), Submessage(body, Join({{0, 0, 0, 8}, Bytes(8)})),
                  Submessage(postfix, Bytes(20))});
 }
 
@@ -716,6 +716,27 @@ TEST(RtpsGuardModes, WhereAllIsProtectedAnnouncementsOfParticipantsAndHandshakes
     EXPECT_TRUE(guard.Stops(Message(Heartbeat, HeartbeatBody(1, 10, 1))));
 }
 
+// Every member holds the keys of other members' writers, and the common key of their messages.
+TEST(RtpsGuardModes, WhereAllIsProtectedADatagramThatAnyMemberCouldHaveMadeIsStopped)
+{
+    constexpr std::uint8_t messagePrefix = 0x33;
+    constexpr std::uint8_t messagePostfix = 0x34;
+    const auto message = [&](const Bytes &receivers)
+    {
+        return Join({Header(), Submessage(messagePrefix, Bytes(20, 7)), Sealed(7),
+                     Submessage(messagePostfix, Join({Bytes(16), receivers}))});
+    };
+    const Bytes nobody = Bytes(4);
+    const Bytes somebody = Join({{0, 0, 0, 1}, Bytes(20, 5)});
+    Gate guard(RtpsGuard::Mode::Protected);
+    EXPECT_TRUE(guard.Passes(message(somebody)));
+    EXPECT_TRUE(guard.Stops(message(nobody)));
+    EXPECT_TRUE(guard.Stops(Join({Header(), Sealed(7)})));
+    // A profile of the user may have other settings.
+    EXPECT_TRUE(Gate(RtpsGuard::Mode::Secured).Passes(message(nobody)));
+    EXPECT_TRUE(Gate(RtpsGuard::Mode::Secured).Passes(Join({Header(), Sealed(7)})));
+}
+
 TEST(RtpsGuardModes, WhereAllIsProtectedAHeartbeatOfAnIdleBuiltinWriterIsNoForgery)
 {
     Gate guard(RtpsGuard::Mode::Protected);
@@ -751,8 +772,8 @@ TEST(RtpsGuardModes, WhereAllIsProtectedAPlainHeartbeatOfAProtectedBuiltinWriter
     }
 }
 
-// A whole message under the signature of the participant in the header. Each member can make one, so its key
-// vouches for nobody else.
+// A whole message under the signature of the participant in the header, with the tag of one receiver. Each
+// member can make one, so its key vouches for nobody else.
 class SignedMessage : public testing::Test
 {
 protected:
@@ -760,7 +781,8 @@ protected:
     {
         constexpr std::uint8_t prefix = 0x33;
         constexpr std::uint8_t postfix = 0x34;
-        return Join({Header(), Submessage(prefix, Bytes(20)), Join(parts), Submessage(postfix, Bytes(20))});
+        return Join({Header(), Submessage(prefix, Bytes(20)), Join(parts),
+                     Submessage(postfix, Join({Bytes(16), {0, 0, 0, 1}, Bytes(20, 5)}))});
     }
     static Bytes Goodbye(const GuidPrefix &who)
     {

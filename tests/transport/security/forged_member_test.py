@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
-"""Somebody who has taken over uav2, with its keys, in a fleet of uav1 and ground: messages that are signed as a whole with
-uav2's own key, and in which others speak. No node obeys them, each counts every kind of them, and the others' traffic goes on. The
-signatures are right: first one of uav2's own datagrams is made once more, and is the same.
+"""A thief has taken over uav2, with its keys, in a fleet of uav1 and ground, and sends two sorts of messages:
+- signed as a whole with uav2's own key, in which others speak;
+- signed as a whole with the key of uav1 or ground, which every member holds, with a sample under the writer's key.
+No node obeys them, each counts every kind of them that the guard can tell, and the others' traffic goes on. The signatures are
+right: a key is used only if it makes the tags of a datagram that was seen.
 
 Usage: forged_member_test.py RABIT LEDGER_NODE LEAKED_KEYS TRANSPORT...
 LEAKED_KEYS: the library that writes down a program's session keys.
 Skipped (exit code 77) where no network namespace can be made: the test reads all datagrams on loopback."""
 
 import collections
-import ctypes
 import os
 import pathlib
 import re
@@ -23,11 +24,11 @@ sys.path.insert(0, str(HERE.parents[1] / "integration"))
 import harness  # noqa: E402
 import loopback  # noqa: E402
 import stolen_key_test as base  # noqa: E402
+from protected_messages import (HEADER, MESSAGE_POSTFIX, MESSAGE_PREFIX, POSTFIX, PREFIX, TAG, Protection, Signer,  # noqa: E402
+                                submessage, submessages)
 
 SKIPPED = 77
-HEADER, CRYPTO, TAG = 20, 20, 16
-MESSAGE_PREFIX, MESSAGE_POSTFIX, INFO_SOURCE = 0x33, 0x34, 0x0c
-DATA, HEARTBEAT, GAP = 0x15, 0x07, 0x08
+INFO_SOURCE, DATA, HEARTBEAT, GAP = 0x0c, 0x15, 0x07, 0x08
 UNKNOWN = bytes(4)
 ANNOUNCER = bytes.fromhex("000100c2")  # the writer of participants' announcements
 PARTICIPANT = bytes.fromhex("000001c1")
@@ -37,27 +38,13 @@ TICK_SIZE = 16  # encapsulation, number, and no padding
 DROPPED = re.compile(r".*a datagram that is no sound RTPS message was dropped(?: \((\d+) of this kind so far\))?")
 KINDS = ("a goodbye of another", "a goodbye of another, without a name", "heartbeat", "gap", "sample", "heartbeat without a name",
          "gap without a name")
+# Of messages in the name of their sender: what they are, whether the guard can tell, and their tags of receivers.
+IN_ITS_NAME = (("in its name, without a receiver's tag", True, []),
+               ("in its name, with the tag of a receiver without a key", True, [(bytes(4), bytes(TAG))]),
+               ("in its name, with the thief's own tag", False, None))
+RECORD = 1 + 32  # of a key: whether it encrypts (e), and the key
+KEPT = 32  # datagrams of each participant
 SAME_FORGERY_TIMES = 4  # what is repeated three times might be believed
-
-
-class Submessage:
-    def __init__(self, datagram, at):
-        self.kind, self.flags = datagram[at], datagram[at + 1]
-        self.order = "<" if self.flags & 1 else ">"
-        length = struct.unpack_from(self.order + "H", datagram, at + 2)[0]
-        self.end = at + 4 + length if length or self.kind in (1, 9) else len(datagram)
-        self.whole = bytes(datagram[at:self.end])
-
-
-def submessages(datagram, at=HEADER):
-    while at + 4 <= len(datagram):
-        each = Submessage(datagram, at)
-        yield at, each
-        at = each.end
-
-
-def submessage(kind, body, flags=1):
-    return struct.pack("<BBH", kind, flags, len(body)) + body
 
 
 def number(value):
@@ -83,6 +70,11 @@ def goodbye(prefix):
     return submessage(DATA, b"\0\0\x10\0" + UNKNOWN + ANNOUNCER + number(FAR) + status + key, flags=1 | 2 | 8)
 
 
+def last_number(data):
+    high, low = struct.unpack_from(data.order + "iI", data.whole, 16)
+    return (high << 32) + low
+
+
 def sample(data, sequence):
     """A sample as this writer sends them, with that number; a tick with the forged one."""
     out = bytearray(data.whole)
@@ -91,79 +83,56 @@ def sample(data, sequence):
     return bytes(out)
 
 
-class Crypto:
-    """AES-256 in Galois counter mode, over text that is signed and not encrypted."""
-
-    _library = ctypes.CDLL("libcrypto.so.3")
-    for _name in ("EVP_CIPHER_CTX_new", "EVP_aes_256_gcm"):
-        getattr(_library, _name).restype = ctypes.c_void_p
-
-    @classmethod
-    def tag(cls, key, iv, text):
-        library, size, tag = cls._library, ctypes.c_int(), ctypes.create_string_buffer(TAG)
-        context = ctypes.c_void_p(library.EVP_CIPHER_CTX_new())
-        get_tag = 0x10
-        done = (library.EVP_EncryptInit_ex(context, ctypes.c_void_p(library.EVP_aes_256_gcm()), None, key, iv) == 1
-                and library.EVP_EncryptUpdate(context, None, ctypes.byref(size), text, len(text)) == 1
-                and library.EVP_EncryptFinal_ex(context, tag, ctypes.byref(size)) == 1
-                and library.EVP_CIPHER_CTX_ctrl(context, get_tag, TAG, tag) == 1)
-        library.EVP_CIPHER_CTX_free(context)
-        assert done
-        return tag.raw
-
-
-class Signer:
-    """Signs messages as the participant that has sent `datagram`, with one of its keys."""
-
-    def __init__(self, datagram, keys):
-        self.prefix = bytes(datagram[8:HEADER])
-        self._header = bytes(datagram[:HEADER + 4 + CRYPTO - 8])
-        self._count = 0
-        parts = list(submessages(datagram))
-        begin, end = HEADER + 4 + CRYPTO, parts[-1][0]
-        self._postfix = bytes(datagram[end:end + 4])
-        fitting = [key for key in keys
-                   if self._signed(key, bytes(datagram[begin - 8:begin]), bytes(datagram[begin:end])) == datagram]
-        self._key = fitting[0] if fitting else None
-
-    def is_known(self):
-        return self._key is not None
-
-    def _signed(self, key, iv_suffix, body):
-        head = self._header + iv_suffix
-        return head + body + self._postfix + Crypto.tag(key, head[-12:], body) + bytes(4)
-
-    def message(self, body):
-        self._count += 1
-        return self._signed(self._key, struct.pack(">II", 0xffff0000, self._count), body)
+def ticks_in_its_name(datagram, keys):
+    """(what it is, whether the guard can tell, a message of the sender of `datagram` with a forged tick); none, if the keys of the
+    message or of its tick are not among these."""
+    parts = list(submessages(datagram))
+    signer = Signer(datagram, keys)
+    for (at, prefix), (_, data), (_, postfix) in zip(parts, parts[1:], parts[2:]):
+        if ([each.kind for each in (prefix, data, postfix)] != [PREFIX, DATA, POSTFIX] or len(data.whole) != 24 + TICK_SIZE
+                or not signer.is_known()):
+            continue
+        writer = Protection(prefix.whole, data.whole, postfix.whole, keys)
+        if not writer.is_known():
+            continue
+        for count, (kind, is_told, tags) in enumerate(IN_ITS_NAME):
+            tick = writer.around(sample(data, last_number(data) + 1), count)
+            yield kind, is_told, signer.message(datagram[parts[1][0]:at] + tick + datagram[postfix.end:parts[-1][0]], tags)
 
 
 class Seen:
-    """The signed datagrams of one domain: the last one of each participant, its writers, and who receives."""
+    """The signed datagrams of one domain: the last ones of each participant, its writers, and who receives."""
 
     def __init__(self, domain):
         self._ports = range(7400 + 250 * domain, 7400 + 250 * (domain + 1))
         self._lock = threading.Lock()
-        self._last, self._writers, self._to = {}, collections.defaultdict(dict), set()
+        self._last = collections.defaultdict(lambda: collections.deque(maxlen=KEPT))
+        self._writers, self._to = collections.defaultdict(dict), set()
 
     def on_datagram(self, _, destination, datagram):
         if destination not in self._ports or datagram[:4] != b"RTPS" or datagram[HEADER] != MESSAGE_PREFIX:
             return
         prefix = bytes(datagram[8:HEADER])
         parts = list(submessages(datagram))
-        if parts[-1][1].kind != MESSAGE_POSTFIX or len(parts[-1][1].whole) != 4 + TAG + 4:
+        if parts[-1][1].kind != MESSAGE_POSTFIX or len(parts[-1][1].whole) < 4 + TAG + 4:
             return
         with self._lock:
-            self._last[prefix] = datagram
+            self._last[prefix].append(bytes(datagram))
             self._to.add(destination)
             for _, each in parts:
                 if each.kind == DATA:
                     self._writers[prefix][each.whole[12:16]] = each
 
-    def signers(self, keys):
+    def datagrams(self, prefix):
         with self._lock:
-            datagrams = list(self._last.values())
-        return [signer for signer in (Signer(datagram, keys) for datagram in datagrams) if signer.is_known()]
+            return list(self._last[prefix])
+
+    def signer_of_all(self, keys):
+        """Signs as the participant whose keys these are, for at least two receivers; None: there is no such datagram yet."""
+        with self._lock:
+            datagrams = [datagram for last in self._last.values() for datagram in last]
+        signers = (Signer(datagram, keys) for datagram in datagrams)
+        return next((signer for signer in signers if signer.is_known() and signer.receivers() > 1), None)
 
     def others(self, own):
         """(prefix, {writer: its last sample}) of each."""
@@ -180,8 +149,7 @@ def forgeries(own, victim, writers):
     yield "a goodbye of another", source(victim) + goodbye(victim)
     yield "a goodbye of another, without a name", source(own) + goodbye(victim)
     for writer, data in writers.items():
-        high, low = struct.unpack_from(data.order + "iI", data.whole, 16)
-        last = (high << 32) + low
+        last = last_number(data)
         for name in (source(victim), source(own) + source(victim)):
             yield "heartbeat", name + heartbeat(writer, last + FAR, last + 2 * FAR)
             yield "gap", name + gap(writer, 1, last + 1000)
@@ -192,8 +160,10 @@ def forgeries(own, victim, writers):
 
 
 def leaked(file):
+    """The session keys of the thief: those with which it signs, and all."""
     keys = file.read_bytes() if file.exists() else b""
-    return {keys[i:i + 32] for i in range(0, len(keys) - 31, 32)}
+    records = [keys[i:i + RECORD] for i in range(0, len(keys) - RECORD + 1, RECORD)]
+    return {record[1:] for record in records if record[:1] == b"e"}, {record[1:] for record in records}
 
 
 class Takeover(base.Case):
@@ -222,6 +192,23 @@ def forge_until_counted(case, nodes, kind, send):
                         f"at least {counted(node)}")
 
 
+def in_anothers_name(case, nodes, out, victims, keys):
+    """Sends ticks in the name of each victim: of each kind, until all nodes have counted it."""
+    def send(kind):
+        fitting = keys()
+        made = [message for victim in victims for datagram in case.seen.datagrams(victim)
+                for each, _, message in ticks_in_its_name(datagram, fitting) if each == kind]
+        for message in made:
+            for port in case.seen.receivers():
+                out.sendto(message, ("127.0.0.1", port))
+        return made
+    for kind, is_told, _ in IN_ITS_NAME:
+        if is_told:
+            forge_until_counted(case, nodes, kind, lambda kind=kind: send(kind))
+        else:
+            assert harness.until(lambda kind=kind: send(kind), base.LIMIT_S)
+
+
 def forge(case):
     """signs messages in which others speak;"""
     endless = ["--sign", "--ticks", "--count", 1000000, "--rate", 20]
@@ -233,10 +220,12 @@ def forge(case):
     base.meet(uav1, ground, thief)
     for node in (uav1, ground):
         node.wait_for("tick from=uav2 .*", 5)
-    (signer,) = harness.until(lambda: case.seen.signers(leaked(file)), base.LIMIT_S)
+    # A session key of the thief is for 32 messages, so the last datagrams are from two sessions at most.
+    signer = harness.until(lambda: case.seen.signer_of_all(leaked(file)[0]), base.LIMIT_S)
     # Both have sent ticks by now.
     others = harness.until(lambda: [each for each in case.seen.others(signer.prefix) if each[1]], base.LIMIT_S)
     out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    in_anothers_name(case, (uav1, ground), out, [prefix for prefix, _ in others], lambda: leaked(file)[1])
     kinds = collections.defaultdict(list)
     for victim, writers in others:
         for kind, body in forgeries(signer.prefix, victim, writers):
@@ -251,7 +240,8 @@ def forge(case):
     for node, other in ((uav1, "ground"), (ground, "uav1")):
         ticks = f"tick from={other} .*"
         node.wait_for(ticks, len(node.find(ticks)) + 10)
-    for node in (uav1, ground, thief):
+    # The thief's own node takes what has the thief's own tag.
+    for node in (uav1, ground):
         base.never(node, f"tick .*number={FORGED}.*")
 
 

@@ -1,5 +1,6 @@
-/* Writes the session keys with which a program encrypts or signs into the file that LEAKED_KEYS names, 32
- * bytes each, by LD_PRELOAD: the keys that somebody has who took over a member. */
+/* Writes the session keys with which a program encrypts, signs, decrypts and verifies into the file that
+ * LEAKED_KEYS names, by LD_PRELOAD: a thief who took over a member has these keys. Each record is `e` or `d`
+ * (encrypts or decrypts), and 32 bytes. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -14,15 +15,18 @@ typedef int (*init)(EVP_CIPHER_CTX *, const EVP_CIPHER *, const unsigned char *,
 typedef int (*init_ex)(EVP_CIPHER_CTX *, const EVP_CIPHER *, ENGINE *, const unsigned char *,
                        const unsigned char *);
 
-static void leak(const EVP_CIPHER_CTX *context, const unsigned char *key)
+static void leak(const EVP_CIPHER_CTX *context, char use, const unsigned char *key)
 {
     const char *file = getenv("LEAKED_KEYS");
     if (key == NULL || file == NULL || EVP_CIPHER_CTX_get_key_length(context) != KEY_SIZE)
     {
         return;
     }
+    unsigned char record[1 + KEY_SIZE];
+    record[0] = (unsigned char)use;
+    memcpy(record + 1, key, KEY_SIZE);
     const int out = open(file, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
-    if (out < 0 || write(out, key, KEY_SIZE) != KEY_SIZE)
+    if (out < 0 || write(out, record, sizeof record) != sizeof record)
     {
         abort();
     }
@@ -36,22 +40,25 @@ static void find(void *function, const char *name)
     memcpy(function, &found, sizeof found);
 }
 
-int EVP_EncryptInit(EVP_CIPHER_CTX *context, const EVP_CIPHER *cipher, const unsigned char *key,
-                    const unsigned char *iv)
-{
-    init next;
-    find(&next, "EVP_EncryptInit");
-    const int result = next(context, cipher, key, iv);
-    leak(context, key);
-    return result;
-}
+#define LEAKING(NAME, USE)                                                                \
+    int NAME(EVP_CIPHER_CTX *context, const EVP_CIPHER *cipher, const unsigned char *key, \
+             const unsigned char *iv)                                                     \
+    {                                                                                     \
+        init next;                                                                        \
+        find(&next, #NAME);                                                               \
+        const int result = next(context, cipher, key, iv);                                \
+        leak(context, USE, key);                                                          \
+        return result;                                                                    \
+    }                                                                                     \
+    int NAME##_ex(EVP_CIPHER_CTX *context, const EVP_CIPHER *cipher, ENGINE *engine,      \
+                  const unsigned char *key, const unsigned char *iv)                      \
+    {                                                                                     \
+        init_ex next;                                                                     \
+        find(&next, #NAME "_ex");                                                         \
+        const int result = next(context, cipher, engine, key, iv);                        \
+        leak(context, USE, key);                                                          \
+        return result;                                                                    \
+    }
 
-int EVP_EncryptInit_ex(EVP_CIPHER_CTX *context, const EVP_CIPHER *cipher, ENGINE *engine,
-                       const unsigned char *key, const unsigned char *iv)
-{
-    init_ex next;
-    find(&next, "EVP_EncryptInit_ex");
-    const int result = next(context, cipher, engine, key, iv);
-    leak(context, key);
-    return result;
-}
+LEAKING(EVP_EncryptInit, 'e')
+LEAKING(EVP_DecryptInit, 'd')
