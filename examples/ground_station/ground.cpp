@@ -76,17 +76,17 @@ void Describe(CLI::App &app, Options &options)
     app.add_option(
         "--web", options.Web,
         "Serve the web page at `PORT`, `ADDRESS:PORT` or `[ADDRESS]:PORT` (address: 127.0.0.1 unless "
-        "given; port 0: any that is free). At another address than this machine's own 127.0.0.1 it is served "
-        "by "
-        "TLS, to who shows the token that the program says when it starts");
+        "given; port 0: any that is free), to browsers that show the token in the printed address. At "
+        "another "
+        "address than this machine's own 127.0.0.1 it is served by TLS");
     CLI::Option *const keys = app.add_option("--web-keys", options.WebKeys,
                                              "Folder of the page's certificate.pem, private_key.pem and "
                                              "token; what is not there is made there, so that "
                                              "the next start has the same (default: new ones at each start)");
-    app.add_flag(
-           "--web-open-to-everybody-on-the-network", options.WebIsOpen,
-           "Serve the page without TLS and without a token at whatever address: whoever reaches the port "
-           "commands the fleet")
+    app.add_flag("--web-open-to-everybody-on-the-network", options.WebIsOpen,
+                 "Serve the page without TLS and without a token at any address, 127.0.0.1 too: anybody who "
+                 "reaches the "
+                 "port commands the fleet")
         ->excludes(keys);
 }
 
@@ -153,12 +153,14 @@ std::uint32_t FirstCommandId()
     return 1 + static_cast<std::uint32_t>(seconds.count() % 400'000) * 10'000;
 }
 
-// The secrets of a page that other machines can reach. Nothing if only this machine reaches it, or if it is
-// open to everybody.
+// The secrets of the page: a token, and TLS if other machines can reach it. Nothing if it is open to
+// everybody.
 std::optional<Ground::WebSecrets> SecretsOf(const Options &options, const boost::asio::ip::address &address)
 {
-    if (options.WebIsOpen || (options.WebKeys.empty() && address.is_loopback()))
+    if (options.WebIsOpen)
         return std::nullopt;
+    if (options.WebKeys.empty() && address.is_loopback())
+        return Ground::MakeWebToken();
     Ground::WebNames names{Ground::NamesOfThisHost(), {}};
     names.Names.emplace_back("localhost");
     for (const auto &one : Ground::AddressesOf(address))

@@ -88,7 +88,7 @@ ends_by_itself)
     ;;
 finds_a_target_on_both_backends)
     start_demo --transport mixed
-    wait_for "$work/err" '^Web page: http://127.0.0.1:[0-9]*/$'
+    wait_for "$work/err" '^Web page: http://127.0.0.1:[0-9]*/?token=[0-9a-f]*$'
     wait_for "$work/out" 'target uav[1-3]/[0-9]* *TRACKED .* validated by uav[1-3], followed'
     kill -INT "$demo_pid"
     end_demo

@@ -126,7 +126,7 @@ bool HasTokenInTarget(const HttpRequest &request)
     return ToView(request.target()).starts_with(TokenTarget);
 }
 
-HttpResponse LetIn(const HttpRequest &request, std::string_view cookie, const std::string &token)
+HttpResponse LetIn(const HttpRequest &request, std::string_view cookie, const std::string &token, bool hasTls)
 {
     // Not a redirection: after a link from another site the browser would not send the cookie with it.
     HttpResponse response =
@@ -135,8 +135,8 @@ HttpResponse LetIn(const HttpRequest &request, std::string_view cookie, const st
              "href=\"data:,\"><title>Ground station</title>"
              "<a href=\"/\">Open the page</a>\n",
              request.version(), request.keep_alive());
-    response.set(http::field::set_cookie,
-                 std::string(cookie) + "=" + token + "; Path=/; Secure; HttpOnly; SameSite=Strict");
+    response.set(http::field::set_cookie, std::string(cookie) + "=" + token + "; Path=/; " +
+                                              (hasTls ? "Secure; " : "") + "HttpOnly; SameSite=Strict");
     return request.method() == http::verb::head ? WithoutBody(std::move(response)) : response;
 }
 

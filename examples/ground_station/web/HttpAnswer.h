@@ -38,8 +38,10 @@ std::vector<std::string_view> TokensOf(const HttpRequest &request, std::string_v
 // True if the address of the request has a token.
 bool HasTokenInTarget(const HttpRequest &request);
 // Gives the browser the token as a cookie that no script can read and no other site's page can use. Then
-// makes it open the page under its plain address, so that the token stays in no history.
-HttpResponse LetIn(const HttpRequest &request, std::string_view cookie, const std::string &token);
+// makes it open the page under its plain address, so that the token stays in no history. With TLS the browser
+// shows the cookie by TLS alone.
+HttpResponse LetIn(const HttpRequest &request, std::string_view cookie, const std::string &token,
+                   bool hasTls);
 // The answer to a request with no token or a wrong one.
 HttpResponse AskForToken(const HttpRequest &request);
 

@@ -59,7 +59,7 @@ void HttpSession::Drop()
 void HttpSession::Begin()
 {
     _context.Gate.BecomesIdle(_id);
-    if (_context.Secrets)
+    if (_context.Secrets && _context.Secrets->Tls)
         TellWhetherTls();
     else
         Read();
@@ -84,7 +84,7 @@ void HttpSession::TellWhetherTls()
 void HttpSession::ShakeHands()
 {
     Lowest().expires_after(_context.Settings.RequestTime);
-    _stream.UseTls(_context.Secrets->Tls)
+    _stream.UseTls(*_context.Secrets->Tls)
         .async_handshake(boost::asio::ssl::stream_base::server, _buffer.data(),
                          [self = shared_from_this()](const boost::beast::error_code &error, std::size_t used)
                          {
@@ -124,7 +124,7 @@ void HttpSession::OnRead(const boost::beast::error_code &error)
     _request = _parser->release();
     if (!_context.Secrets)
         Answer();
-    else if (_stream.GetTls() == nullptr)
+    else if (_context.Secrets->Tls && _stream.GetTls() == nullptr)
         Write(RefuseHttp(http::status::bad_request,
                          "This page is served by TLS alone: its address begins with https://.",
                          _request.version(), false));
@@ -179,7 +179,8 @@ void HttpSession::Answer()
     {
         const bool opens =
             _context.Secrets && HasTokenInTarget(_request) && _context.Guard.IsHostAllowed(HostOf(_request));
-        Write(opens ? LetIn(_request, _context.Secrets->Cookie, _context.Secrets->Token)
+        Write(opens ? LetIn(_request, _context.Secrets->Cookie, _context.Secrets->Token,
+                            _context.Secrets->Tls.has_value())
                     : AnswerHttp(_request, _context.Files, _context.Pictures, _context.Guard));
         return;
     }

@@ -2,8 +2,9 @@
 
 #include "ConnectionGate.h"
 #include "HttpAnswer.h"
-#include "TokenGuard.h"
 #include "WebServer.h"
+
+#include <keys/TokenGuard.h>
 
 #include <boost/asio/ssl/context.hpp>
 
@@ -22,8 +23,8 @@ class PageSession;
 // The secrets of a server: see WebServer::Settings::Secrets.
 struct ServerSecrets
 {
-    boost::asio::ssl::context Tls;
-    TokenGuard Guard;
+    std::optional<boost::asio::ssl::context> Tls;
+    Rabit::Keys::TokenGuard Guard;
     std::string Token;
     std::string Cookie;  // its name
 };

@@ -74,11 +74,11 @@ boost::asio::ip::tcp::endpoint ParseWebAddress(const std::string &text)
     return {address, ParsePort(text, text.substr(colon + 1))};
 }
 
-std::string WebPageUrl(const boost::asio::ip::tcp::endpoint &endpoint, const std::string &token)
+std::string WebPageUrl(const boost::asio::ip::tcp::endpoint &endpoint, const std::string &token, bool hasTls)
 {
     const std::string host = endpoint.address().to_string();
-    return (token.empty() ? "http://" : "https://") + (endpoint.address().is_v6() ? "[" + host + "]" : host) +
-           ":" + std::to_string(endpoint.port()) + "/" + (token.empty() ? "" : "?token=" + token);
+    return (hasTls ? "https://" : "http://") + (endpoint.address().is_v6() ? "[" + host + "]" : host) + ":" +
+           std::to_string(endpoint.port()) + "/" + (token.empty() ? "" : "?token=" + token);
 }
 
 std::vector<std::string> NamesOfThisHost()

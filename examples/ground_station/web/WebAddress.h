@@ -21,9 +21,10 @@ public:
 // and a port from 0 to 65535, where 0 means any free port. Throws WebServerError.
 boost::asio::ip::tcp::endpoint ParseWebAddress(const std::string &text);
 
-// The page at that address, for people: `http://127.0.0.1:8080/`, or with a token, and so with TLS,
-// `https://127.0.0.1:8080/?token=...`.
-std::string WebPageUrl(const boost::asio::ip::tcp::endpoint &endpoint, const std::string &token = {});
+// The page at that address, for people: `http://127.0.0.1:8080/`, or with a token
+// `http://127.0.0.1:8080/?token=...`; with TLS `https://...`.
+std::string WebPageUrl(const boost::asio::ip::tcp::endpoint &endpoint, const std::string &token = {},
+                       bool hasTls = false);
 
 // The names of this machine for others: its host name, and that with `.local`. Empty if it has none.
 std::vector<std::string> NamesOfThisHost();

@@ -2,19 +2,11 @@
 
 #include "WebAddress.h"
 
+#include <keys/AccessToken.h>
 #include <keys/KeyFiles.h>
 #include <keys/KeysError.h>
-#include <keys/OpenSsl.h>
 
-#include <openssl/rand.h>
-
-#include <boost/algorithm/hex.hpp>
-#include <boost/algorithm/string/trim.hpp>
-
-#include <algorithm>
-#include <array>
 #include <filesystem>
-#include <iterator>
 
 namespace Ground
 {
@@ -27,29 +19,18 @@ bool IsThere(const std::string &file)
     std::error_code ignored;
     return std::filesystem::exists(std::filesystem::symlink_status(file, ignored));
 }
-
-bool IsTokenCharacter(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
-}
-
-void CheckToken(const std::string &token, const std::string &file)
-{
-    if (token.size() < ShortestToken || token.size() > LongestToken ||
-        !std::all_of(token.begin(), token.end(), &IsTokenCharacter))
-        throw WebServerError(file + " has no token: " + std::to_string(ShortestToken) + " to " +
-                             std::to_string(LongestToken) +
-                             " letters, digits, - and _, at random; remove it, and one is made");
-}
 }  // namespace
 
-std::string MakeWebToken()
+WebSecrets MakeWebToken()
 {
-    std::array<unsigned char, 16> octets{};
-    Keys::Must(RAND_bytes(octets.data(), static_cast<int>(octets.size())) == 1, "make a token");
-    std::string token;
-    boost::algorithm::hex_lower(octets, std::back_inserter(token));
-    return token;
+    try
+    {
+        return {{}, {}, Keys::MakeAccessToken()};
+    }
+    catch (const Keys::KeysError &error)
+    {
+        throw WebServerError(error.what());
+    }
 }
 
 WebSecrets MakeWebSecrets(const WebNames &names, std::time_t now)
@@ -59,7 +40,7 @@ WebSecrets MakeWebSecrets(const WebNames &names, std::time_t now)
         WebSecrets secrets;
         secrets.Key = MakeWebKey();
         secrets.Certificate = MakeWebCertificate(secrets.Key, names, now);
-        secrets.Token = MakeWebToken();
+        secrets.Token = Keys::MakeAccessToken();
         return secrets;
     }
     catch (const Keys::KeysError &error)
@@ -88,11 +69,7 @@ WebSecrets WebSecretsIn(const std::string &folder, const WebNames &names, std::t
             IsThere(certificate) ? Keys::ReadFile(certificate) : MakeWebCertificate(secrets.Key, names, now);
         if (mayWrite && !IsThere(certificate))
             Keys::WriteFile(certificate, secrets.Certificate);
-        secrets.Token =
-            IsThere(token) ? boost::algorithm::trim_copy(Keys::ReadSecret(token)) : MakeWebToken();
-        CheckToken(secrets.Token, token);
-        if (mayWrite && !IsThere(token))
-            Keys::WriteSecret(token, secrets.Token + "\n");
+        secrets.Token = Keys::AccessTokenIn(token, mayWrite);
         if (const std::string why = WhyNotServe(secrets.Certificate, secrets.Key, certificate, now);
             !why.empty())
             throw WebServerError(why);

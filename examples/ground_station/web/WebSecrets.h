@@ -11,17 +11,15 @@ namespace Ground
 
 struct WebSecrets
 {
-    std::string Certificate;  // PEM; may be followed by its chain of certificates
-    std::string Key;          // PEM
+    std::string Certificate;  // PEM; may be followed by its chain of certificates; empty: no TLS
+    std::string Key;          // PEM; empty: no TLS
     std::string Token;        // gives access to view and command
+
+    bool HasTls() const { return !Certificate.empty(); }
 };
 
-// A shorter token could be guessed.
-inline constexpr std::size_t ShortestToken = 22;
-inline constexpr std::size_t LongestToken = 128;
-
-// 128 random bits.
-std::string MakeWebToken();
+// A new token without TLS, for a page that only this machine reaches. Throws WebServerError.
+WebSecrets MakeWebToken();
 
 // New secrets, which are valid until the program ends. Throws WebServerError.
 WebSecrets MakeWebSecrets(const WebNames &names, std::time_t now);

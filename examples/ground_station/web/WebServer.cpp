@@ -16,18 +16,16 @@ namespace
 RequestGuard GuardOf(const WebServer::Settings &settings)
 {
     std::vector<std::string> names = NamesOfThisHost();
-    if (settings.Secrets)
+    const bool hasTls = settings.Secrets && settings.Secrets->HasTls();
+    if (hasTls)
         for (std::string &name : NamesIn(settings.Secrets->Certificate))
             names.push_back(std::move(name));
-    return {settings.Endpoint.address().is_loopback(), std::move(names), settings.Secrets.has_value()};
+    return {settings.Endpoint.address().is_loopback(), std::move(names), hasTls};
 }
 
-std::unique_ptr<ServerSecrets> SecretsOf(const WebServer::Settings &settings, std::uint16_t port)
+boost::asio::ssl::context TlsOf(const WebSecrets &secrets)
 {
     namespace ssl = boost::asio::ssl;
-    if (!settings.Secrets)
-        return nullptr;
-    const WebSecrets &secrets = *settings.Secrets;
     ssl::context tls(ssl::context::tls_server);
     try
     {
@@ -42,10 +40,23 @@ std::unique_ptr<ServerSecrets> SecretsOf(const WebServer::Settings &settings, st
         throw WebServerError("The web page cannot be served with that certificate: " +
                              error.code().message());
     }
+    return tls;
+}
+
+std::unique_ptr<ServerSecrets> SecretsOf(const WebServer::Settings &settings, std::uint16_t port)
+{
+    if (!settings.Secrets)
+        return nullptr;
+    const WebSecrets &secrets = *settings.Secrets;
+    std::optional<boost::asio::ssl::context> tls;
+    if (secrets.HasTls())
+        tls = TlsOf(secrets);
     // Cookies belong to a host, for all its ports, so two ground stations on one machine need different
     // names. Because of the prefix the browser accepts the cookie only from this host by TLS.
-    return std::make_unique<ServerSecrets>(ServerSecrets{
-        std::move(tls), TokenGuard(secrets.Token), secrets.Token, "__Host-rabit-" + std::to_string(port)});
+    const std::string prefix = tls ? "__Host-" : "";
+    return std::make_unique<ServerSecrets>(
+        ServerSecrets{std::move(tls), Rabit::Keys::TokenGuard(secrets.Token), secrets.Token,
+                      prefix + "rabit-" + std::to_string(port)});
 }
 }  // namespace
 
@@ -97,12 +108,13 @@ std::vector<std::string> WebServer::Addresses() const
     const auto &secrets = _context->Settings.Secrets;
     std::vector<std::string> lines;
     for (const auto &address : AddressesOf(_endpoint.address()))
-        lines.push_back("Web page: " +
-                        WebPageUrl({address, _endpoint.port()}, secrets ? secrets->Token : std::string()));
-    if (secrets)
+        lines.push_back("Web page: " + WebPageUrl({address, _endpoint.port()},
+                                                  secrets ? secrets->Token : std::string(),
+                                                  secrets && secrets->HasTls()));
+    if (secrets && secrets->HasTls())
         lines.push_back("Its certificate, SHA-256: " + FingerprintOf(secrets->Certificate));
-    else if (!_endpoint.address().is_loopback())
-        lines.push_back("Whoever reaches this port commands the fleet: there is no TLS, and no token.");
+    else if (!secrets)
+        lines.push_back("Anybody who reaches this port commands the fleet: there is no TLS, and no token.");
     return lines;
 }
 

@@ -47,7 +47,7 @@ for ((tries = 0; tries < 6000; tries++)); do
     kill -0 "$pid" 2>/dev/null || fail "it has ended"
     sleep 0.1
 done
-grep -q '^The replay is at http://127.0.0.1:[0-9]*/$' "$work/out" || fail "no replay within ten minutes"
+grep -q '^The replay is at http://127.0.0.1:[0-9]*/?token=[0-9a-f]*$' "$work/out" || fail "no replay within ten minutes"
 
 # Seven nodes were killed hard, and their files are whole again.
 [ "$(grep -c '_recovered.mcap: [0-9]* messages$' "$work/out")" -ge 7 ] || fail "seven recordings were to be recovered"

@@ -139,12 +139,18 @@ TEST_F(HttpAnswer, FindsNoTokenWhereNoneIsShown)
 
 TEST_F(HttpAnswer, GivesTheTokenAsACookieForThisSiteByTlsAndForNoScript)
 {
-    const auto response = Ground::LetIn(Request(http::verb::get, "/?token=t"), "__Host-rabit-80", "t");
+    const auto response = Ground::LetIn(Request(http::verb::get, "/?token=t"), "__Host-rabit-80", "t", true);
     EXPECT_EQ(response.result(), http::status::ok);
     EXPECT_EQ(response[http::field::set_cookie],
               "__Host-rabit-80=t; Path=/; Secure; HttpOnly; SameSite=Strict");
     EXPECT_THAT(response.body(), HasSubstr("url=/"));
     EXPECT_THAT(response.body(), testing::Not(HasSubstr("token")));
+}
+
+TEST_F(HttpAnswer, GivesTheTokenWithoutTlsAsACookieThatABrowserTakesWithoutTls)
+{
+    const auto response = Ground::LetIn(Request(http::verb::get, "/?token=t"), "rabit-80", "t", false);
+    EXPECT_EQ(response[http::field::set_cookie], "rabit-80=t; Path=/; HttpOnly; SameSite=Strict");
 }
 
 TEST_F(HttpAnswer, AsksForTheTokenAndTellsWhereItIs)

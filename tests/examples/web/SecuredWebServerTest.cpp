@@ -179,6 +179,43 @@ TEST_F(SecuredWebServerTest, OpensByTheAddressThatItSaysAndThenByTheCookie)
     EXPECT_THAT(page.Next(), Optional(std::string("reply to x")));
 }
 
+// As it listens on loopback, where other users of the machine reach it.
+TEST_F(SecuredWebServerTest, AsksForTheTokenWithoutTls)
+{
+    _settings.Secrets = Ground::MakeWebToken();
+    Start();
+    const std::string port = std::to_string(Endpoint().port());
+    EXPECT_THAT(_server->Addresses(),
+                testing::ElementsAre("Web page: http://127.0.0.1:" + port + "/?token=" + Token()));
+    const auto ask = [this](const std::string &target, const std::string &headers)
+    {
+        RawClient client(Endpoint());
+        client.Send("GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(Endpoint().port()) +
+                    "\r\n" + headers + "\r\n");
+        return client.Rest();
+    };
+    const std::string close = "Connection: close\r\n";
+    const std::string live =
+        "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n"
+        "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nOrigin: http://127.0.0.1:" +
+        port + "\r\n";
+    for (const std::string &headers : {close, live, close + "Cookie: rabit-" + port + "=wrong\r\n"})
+        EXPECT_THAT(ask(headers == live ? "/live" : "/", headers), StartsWith("HTTP/1.1 401 "));
+    EXPECT_EQ(_server->Count().PagesOpened, 0u);
+    const std::string cookie = "rabit-" + port + "=" + Token();
+    EXPECT_THAT(
+        ask("/?token=" + Token(), close),
+        AllOf(StartsWith("HTTP/1.1 200 "), HasSubstr("Set-Cookie: " + cookie + "; Path=/; HttpOnly")));
+    EXPECT_THAT(ask("/", close + "Cookie: " + cookie + "\r\n"), HasSubstr("<p>page</p>"));
+    // A page of another site has the browser send the cookie, but not its own origin.
+    const std::string other = live.substr(0, live.find("Origin: ")) + "Origin: null\r\nCookie: " + cookie;
+    EXPECT_THAT(ask("/live", other + "\r\n"), StartsWith("HTTP/1.1 403 "));
+    RawClient page(Endpoint());
+    page.Send("GET /live HTTP/1.1\r\nHost: 127.0.0.1:" + port + "\r\n" + live + "Cookie: " + cookie +
+              "\r\n\r\n");
+    EXPECT_TRUE(Becomes([this] { return _server->Count().PagesOpened == 1; }));
+}
+
 TEST_F(SecuredWebServerTest, TakesNoOrderWithoutTheToken)
 {
     Start();

@@ -33,9 +33,10 @@ TEST(WebAddress, TakesAnAddressOfEitherFamily)
     EXPECT_EQ(Ground::WebPageUrl(Ground::ParseWebAddress("[::1]:8080")), "http://[::1]:8080/");
 }
 
-TEST(WebAddress, ShowsTheTokenInTheAddressWhichIsByTlsThen)
+TEST(WebAddress, ShowsTheTokenInTheAddressAndWhetherItIsByTls)
 {
-    EXPECT_EQ(Ground::WebPageUrl(Ground::ParseWebAddress("[2001:db8::1]:80"), "abc"),
+    EXPECT_EQ(Ground::WebPageUrl(Ground::ParseWebAddress("8080"), "abc"), "http://127.0.0.1:8080/?token=abc");
+    EXPECT_EQ(Ground::WebPageUrl(Ground::ParseWebAddress("[2001:db8::1]:80"), "abc", true),
               "https://[2001:db8::1]:80/?token=abc");
 }
 

@@ -10,7 +10,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <set>
 #include <string>
 
 namespace
@@ -77,14 +76,13 @@ TEST_F(WebSecretsTest, AreOthersAtEachStartUnlessTheyAreKept)
     EXPECT_EQ(Ground::WhyNotServe(one.Certificate, one.Key, "it", Now), "");
 }
 
-TEST_F(WebSecretsTest, HaveTokensOf128Bits)
+TEST_F(WebSecretsTest, AreATokenAloneWithoutTls)
 {
-    std::set<std::string> tokens;
-    for (int i = 0; i < 100; ++i)
-        tokens.insert(Ground::MakeWebToken());
-    EXPECT_EQ(tokens.size(), 100u);
-    EXPECT_EQ(tokens.begin()->size(), 32u);
-    EXPECT_EQ(tokens.begin()->find_first_not_of("0123456789abcdef"), std::string::npos);
+    const auto one = Ground::MakeWebToken();
+    EXPECT_FALSE(one.HasTls());
+    EXPECT_EQ(one.Token.size(), 32u);
+    EXPECT_NE(one.Token, Ground::MakeWebToken().Token);
+    EXPECT_TRUE(Ground::MakeWebSecrets(Names, Now).HasTls());
 }
 
 TEST_F(WebSecretsTest, StayTheSameInAFolderThatIsForItsOwnerAlone)
@@ -124,21 +122,6 @@ TEST_F(WebSecretsTest, AreRefusedIfOthersMayReadThem)
     fs::permissions(File("token"), fs::perms(0600));
     fs::permissions(File("private_key.pem"), fs::perms(0604));
     EXPECT_THAT(Refusal(), HasSubstr("private_key.pem is not for its owner alone (mode 604)"));
-}
-
-TEST_F(WebSecretsTest, TakeATokenOfOnesOwnUnlessItCouldBeGuessed)
-{
-    Read();
-    Write("token", "a-token_OF-one-s-own-42\n");
-    EXPECT_EQ(Read().Token, "a-token_OF-one-s-own-42");
-    for (const std::string &token :
-         {std::string(), std::string("secret"), std::string(21, 'x'), std::string(129, 'x'),
-          std::string("with spaces in between it"), std::string("semicolon;semicolon;semi"),
-          std::string("line\r\nSet-Cookie: a-a-a-a")})
-    {
-        Write("token", token);
-        EXPECT_THAT(Refusal(), HasSubstr("/token has no token: 22 to 128 letters, digits, - and _")) << token;
-    }
 }
 
 TEST_F(WebSecretsTest, AreRefusedWithWhatIsWrongWithTheCertificate)

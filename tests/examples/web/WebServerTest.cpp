@@ -103,10 +103,11 @@ TEST_F(WebServerTest, ServesThePage)
 TEST_F(WebServerTest, SaysWhereItsPageIsAndWhatItMeansThatEverybodyMayOpenIt)
 {
     EXPECT_THAT(WebServer(_settings, Files).Addresses(),
-                testing::ElementsAre(StartsWith("Web page: http://127.0.0.1:")));
+                testing::ElementsAre(StartsWith("Web page: http://127.0.0.1:"),
+                                     StartsWith("Anybody who reaches this port commands the fleet")));
     _settings.Endpoint = {boost::asio::ip::address_v4::any(), 0};
     EXPECT_THAT(WebServer(_settings, Files).Addresses().back(),
-                StartsWith("Whoever reaches this port commands the fleet"));
+                StartsWith("Anybody who reaches this port commands the fleet"));
 }
 
 TEST_F(WebServerTest, ServesSeveralRequestsOnOneConnection)

@@ -42,11 +42,18 @@ done
 port=$(grep -o '[0-9]*/$' <<<"$url" | tr -d /)
 refused "$port" "cannot be served at $url: Address already in use"
 
-# Beyond this machine the page needs TLS and a token, the same at each start where they are kept.
+# Other users of this machine reach its loopback address, so the page needs a token there, too.
 serve() { # serve OPTION...: it ends without having heard an aircraft
     timeout 60 "$ground" --config "$root/examples/ground_station/ground.yaml" --seconds 1 "$@" >"$work/out" 2>"$work/err"
     [ $? -eq 1 ] || fail "$*: it does not run"
 }
+serve --web 0
+grep -q '^Web page: http://127.0.0.1:[0-9]*/?token=[0-9a-f]\{32\}$' "$work/err" || fail "no address with a token on loopback"
+serve --web 0 --web-open-to-everybody-on-the-network
+grep -q '^Web page: http://127.0.0.1:[0-9]*/$' "$work/err" || fail "an open page has a token"
+grep -q '^Anybody who reaches this port commands the fleet' "$work/err" || fail "it does not say that the page is open"
+
+# Beyond this machine the page needs TLS and a token, the same at each start where they are kept.
 addresses() { grep -o 'https://[^ ]*' "$work/err" | sed 's/:[0-9][0-9]*\//\//'; }
 serve --web 0.0.0.0:0
 first=$(addresses)
@@ -67,6 +74,6 @@ for extra in --check --seconds=1; do
 done
 timeout 60 "$ground" --web 0.0.0.0:0 --web-keys "$work/keys" --web-open-to-everybody-on-the-network 2>"$work/err"
 [ $? -eq 2 ] || fail "a page with keys is open to everybody"
-timeout 60 "$ground" --help | tr -s ' \n' ' ' | grep -q 'whoever reaches the port commands the fleet' ||
+timeout 60 "$ground" --help | tr -s ' \n' ' ' | grep -q 'anybody who reaches the port commands the fleet' ||
     fail "the help does not say what an open page means"
 echo passed

@@ -12,10 +12,10 @@
 #include <string_view>
 #include <vector>
 
-namespace Ground
+namespace Rabit::Keys
 {
 
-// Checks the token of a page, and slows down attempts with wrong tokens.
+// Checks the token of a server (AccessToken.h), and slows down attempts with wrong tokens.
 //
 // A token is checked only after a pause. The pause grows with the recent wrong tokens from its address and
 // from all addresses; one wrong token is forgotten in ForgetsOneIn. The pause is limited, so that the right
@@ -40,7 +40,8 @@ public:
     static constexpr std::size_t MostAddresses = 256;
     static constexpr std::size_t MostInALine = 4;
 
-    explicit TokenGuard(std::string_view token);
+    // `what`: the server, for Line, such as "The web page".
+    explicit TokenGuard(std::string_view token, std::string what = "The web page");
 
     // The pause before a token from that address may be checked.
     std::chrono::milliseconds PauseFor(const Address &from, Time now) const;
@@ -72,6 +73,7 @@ private:
     Visitor &VisitorFrom(const Address &from, Time now);
 
     const Digest _token;
+    const std::string _what;
     std::map<Address, Visitor> _visitors;
     Level _wrongOfAll;
     std::map<Address, std::uint64_t> _unsaid;  // wrong tokens since the last line
@@ -79,4 +81,4 @@ private:
     std::optional<Time> _said;
 };
 
-}  // namespace Ground
+}  // namespace Rabit::Keys

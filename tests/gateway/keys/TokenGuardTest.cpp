@@ -1,4 +1,4 @@
-#include "TokenGuard.h"
+#include "keys/TokenGuard.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace
 {
 using namespace std::chrono_literals;
-using Ground::TokenGuard;
+using Rabit::Keys::TokenGuard;
 using testing::HasSubstr;
 
 const std::string Right = "0123456789abcdef0123456789abcdef";

@@ -1,12 +1,13 @@
-#include "TokenGuard.h"
+#include "keys/TokenGuard.h"
 
 #include <openssl/crypto.h>
 #include <openssl/sha.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-namespace Ground
+namespace Rabit::Keys
 {
 
 double TokenGuard::Level::Now(Time now) const
@@ -21,7 +22,10 @@ void TokenGuard::Level::Rise(Time now, double most)
     At = now;
 }
 
-TokenGuard::TokenGuard(std::string_view token) : _token(DigestOf(token)) {}
+TokenGuard::TokenGuard(std::string_view token, std::string what)
+    : _token(DigestOf(token)), _what(std::move(what))
+{
+}
 
 std::chrono::milliseconds TokenGuard::PauseFor(const Address &from, Time now) const
 {
@@ -31,7 +35,9 @@ std::chrono::milliseconds TokenGuard::PauseFor(const Address &from, Time now) co
     const double ofAll = wasRight ? 0 : _wrongOfAll.Now(now) - FreeOfAll;
     const double over = std::max(ofOne, ofAll);
     if (over <= 0)
+    {
         return std::chrono::milliseconds(0);
+    }
     const double longest = static_cast<double>(LongestPause.count());
     return std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(
         std::min(longest, static_cast<double>(FirstPause.count()) * std::exp2(std::min(over, 16.0)))));
@@ -49,24 +55,34 @@ bool TokenGuard::IsRight(const Address &from, std::string_view shown, Time now)
     visitor.Wrong.Rise(now, FreeOfOne + Remembered);
     _wrongOfAll.Rise(now, FreeOfAll + Remembered);
     if (_unsaid.contains(from) || _unsaid.size() < MostInALine)
+    {
         ++_unsaid[from];
+    }
     else
+    {
         ++_unsaidOfOthers;
+    }
     return false;
 }
 
 std::optional<std::string> TokenGuard::Line(Time now)
 {
     if (_unsaid.empty() || (_said && now - *_said < BetweenLines))
+    {
         return std::nullopt;
+    }
     const auto times = [](std::uint64_t count)
     { return count == 1 ? std::string("once") : std::to_string(count) + " times"; };
     std::string line;
     for (const auto &[address, count] : _unsaid)
-        line += (line.empty() ? "The web page was shown a wrong token: from " : ", from ") +
-                address.to_string() + " " + times(count);
+    {
+        line += (line.empty() ? _what + " was shown a wrong token: from " : ", from ") + address.to_string() +
+                " " + times(count);
+    }
     if (_unsaidOfOthers > 0)
+    {
         line += ", from others " + times(_unsaidOfOthers);
+    }
     _unsaid.clear();
     _unsaidOfOthers = 0;
     _said = now;
@@ -84,9 +100,13 @@ TokenGuard::Address TokenGuard::NetworkOf(const Address &from)
 {
     constexpr std::size_t networkBytes = 8;
     if (!from.is_v6())
+    {
         return from;
+    }
     if (from.to_v6().is_v4_mapped())
+    {
         return boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, from.to_v6());
+    }
     auto bytes = from.to_v6().to_bytes();
     std::fill(bytes.begin() + networkBytes, bytes.end(), static_cast<unsigned char>(0));
     return boost::asio::ip::address_v6(bytes);
@@ -96,7 +116,9 @@ TokenGuard::Visitor &TokenGuard::VisitorFrom(const Address &from, Time now)
 {
     const auto found = _visitors.find(from);
     if (found != _visitors.end())
+    {
         return found->second;
+    }
     if (_visitors.size() >= MostAddresses)
     {
         // Forgets the address with the fewest wrong tokens; addresses that showed the right token are kept
@@ -114,4 +136,4 @@ TokenGuard::Visitor &TokenGuard::VisitorFrom(const Address &from, Time now)
     return _visitors[from];
 }
 
-}  // namespace Ground
+}  // namespace Rabit::Keys
