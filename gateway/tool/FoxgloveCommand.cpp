@@ -5,6 +5,7 @@
 #include "Command.h"
 #include "FleetFollower.h"
 #include "FleetSession.h"
+#include "keys/AccessToken.h"
 #include "live/LiveServer.h"
 #include "live/LiveTaps.h"
 
@@ -21,6 +22,7 @@ struct Options
     std::string Address = "127.0.0.1";
     std::uint16_t Port = 8765;
     std::vector<std::string> Origins;
+    std::string TokenFile;
     bool IsOpen = false;
 };
 
@@ -29,6 +31,11 @@ LiveServer::Settings SettingsOf(const Options &options)
     LiveServer::Settings settings;
     settings.Endpoint = {boost::asio::ip::make_address(options.Address), options.Port};
     settings.Origins = options.Origins;
+    if (!options.IsOpen)
+    {
+        settings.Token =
+            options.TokenFile.empty() ? Keys::MakeAccessToken() : Keys::AccessTokenIn(options.TokenFile);
+    }
     return settings;
 }
 
@@ -45,18 +52,17 @@ void CheckListen(const Options &options)
     if (!options.IsOpen && !boost::asio::ip::make_address(options.Address).is_loopback())
     {
         throw CLI::ValidationError(
-            "--listen",
-            "whoever reaches " + options.Address +
-                " would see everything, for there is no password; `ssh -L 8765:127.0.0.1:8765` brings "
-                "it to one machine, --open-to-everybody-on-the-network allows it to all");
+            "--listen", "there is no TLS: anybody on the way to " + options.Address +
+                            " would see the token and everything else; `ssh -L 8765:127.0.0.1:8765` brings "
+                            "it to one machine, --open-to-everybody-on-the-network allows it to all");
     }
 }
 
-std::string UrlOf(const boost::asio::ip::tcp::endpoint &endpoint)
+std::string UrlOf(const boost::asio::ip::tcp::endpoint &endpoint, const std::string &token)
 {
     const std::string host = endpoint.address().to_string();
     return "ws://" + (endpoint.address().is_v6() ? "[" + host + "]" : host) + ":" +
-           std::to_string(endpoint.port());
+           std::to_string(endpoint.port()) + (token.empty() ? "" : "/?token=" + token);
 }
 
 int Run(const Options &options, Wakeup &wakeup)
@@ -64,8 +70,9 @@ int Run(const Options &options, Wakeup &wakeup)
     GatewayConfig config = ConfigOf(options.Common);
     std::vector<std::string> except = options.Except;
     config.Tool->AsksOf = FleetFollower::NodesOf(options.What);
-    LiveServer server(SettingsOf(options));
-    const std::string url = UrlOf(server.Endpoint());
+    const LiveServer::Settings settings = SettingsOf(options);
+    LiveServer server(settings);
+    const std::string url = UrlOf(server.Endpoint(), settings.Token);
     if (!Output::ObjectOrLine(options.Common.Json, {{"url", url}}, url))
     {
         return Good;
@@ -111,11 +118,19 @@ void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
             "Address to listen at (default: 127.0.0.1); another one than of this machine alone needs "
             "--open-to-everybody-on-the-network")
         ->check(CLI::Validator([](const std::string &text) { return WhyNoAddress(text); }, ""));
-    command->add_flag("--open-to-everybody-on-the-network", options->IsOpen,
-                      "Whoever reaches the address may see everything: there is no password");
+    CLI::Option *const open =
+        command->add_flag("--open-to-everybody-on-the-network", options->IsOpen,
+                          "Anybody who reaches the address may see everything: no token is needed");
     command->add_option("--port", options->Port, "Port to listen at (default: 8765; 0: any)");
-    command->add_option("--origin", options->Origins,
-                        "A site whose pages may look, besides Foxglove's, Lichtblick's and this machine's");
+    command->add_option(
+        "--origin", options->Origins,
+        "An origin whose pages may look, besides the sites of Foxglove and Lichtblick; file:// for an "
+        "installed Foxglove or Lichtblick");
+    command
+        ->add_option("--token-file", options->TokenFile,
+                     "File that keeps the token, so that the address stays the same; made if it is missing "
+                     "(default: a new token at each start)")
+        ->excludes(open);
     AddExamples(*command, {"rabit foxglove", "rabit foxglove 'uav*/Pose' --domain 7",
                            "rabit foxglove --except '*/CameraView' --port 8766"});
 }

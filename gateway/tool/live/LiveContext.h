@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 
+#include "keys/TokenGuard.h"
 #include "live/LiveProtocol.h"
 #include "live/LiveQueue.h"
 #include "live/LiveServer.h"
@@ -35,6 +37,7 @@ struct LiveContext
     std::atomic<std::uint64_t> Viewers{0};
     std::atomic<std::uint64_t> Shown{0};
     std::atomic<std::uint64_t> Dropped{0};
+    std::optional<Keys::TokenGuard> Guard{};  // empty: no token is needed
 };
 
 }  // namespace Rabit::Tool

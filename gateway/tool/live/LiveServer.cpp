@@ -24,6 +24,10 @@ std::string RandomId()
 
 LiveServer::LiveServer(const Settings &settings) : _context(new LiveContext{settings, RandomId(), {}, {}})
 {
+    if (!settings.Token.empty())
+    {
+        _context->Guard.emplace(settings.Token, "The server of viewers");
+    }
     try
     {
         _server = std::make_unique<TcpServer>(settings.Endpoint);

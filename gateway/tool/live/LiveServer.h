@@ -25,6 +25,8 @@ class LiveSession;
 // - The values that wait for a slow viewer are bounded. Once a second it is told how many it missed, by
 //   topic. It delays no other viewer. It misses no State's newest value.
 // - A channel stays for as long as the server: a node that comes back goes on in the same panels.
+// - A viewer must show the token in the address (Settings::Token): other users of the machine reach loopback,
+//   too. After wrong tokens the server lets an address wait (keys/TokenGuard.h).
 // - Pages of other sites than viewers' are refused: a browser would let any page look at loopback.
 //
 // Requests from the network, their time and the number of viewers are bounded. Nothing from the network makes
@@ -36,8 +38,10 @@ public:
     {
         boost::asio::ip::tcp::endpoint Endpoint{boost::asio::ip::address_v4::loopback(), 8765};
         std::string Name = "rabit";
-        // Sites whose pages may look, besides those of Foxglove, Lichtblick and this machine; `*`: all.
+        // Origins whose pages may look, besides the sites of Foxglove and Lichtblick; `*`: all. `file://`: a
+        // viewer that is installed, and any page that is saved on this machine.
         std::vector<std::string> Origins{};
+        std::string Token{};  // that viewers must show; empty: none
         std::size_t MostViewers = 16;
         std::size_t BytesOfViewer = std::size_t{8} << 20;  // that wait for one viewer
         std::chrono::seconds Silence{30};  // a viewer that does not even answer pings for so long is gone

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "Output.h"
 #include "SafeText.h"
 
 namespace Rabit::Tool
@@ -18,26 +19,21 @@ constexpr std::chrono::seconds RequestTime{10};
 constexpr std::chrono::seconds TellPeriod{1};
 constexpr std::size_t MostSubscriptions = 10'000;
 
-// Sites of viewers, and pages from files of this machine.
+// Sites of viewers.
 constexpr std::string_view Viewers[] = {"https://app.foxglove.dev", "https://studio.foxglove.dev",
-                                        "https://lichtblick-suite.github.io", "file://"};
+                                        "https://lichtblick-suite.github.io"};
 
-bool IsThisMachine(std::string_view origin)
+boost::asio::ip::address AddressOf(const boost::asio::ip::tcp::socket &socket)
 {
-    for (const std::string_view host : {"http://localhost", "http://127.0.0.1", "http://[::1]"})
-    {
-        if (origin.starts_with(host) && (origin.size() == host.size() || origin[host.size()] == ':'))
-        {
-            return true;
-        }
-    }
-    return false;
+    beast::error_code ignored;
+    return socket.remote_endpoint(ignored).address();
 }
 
 }  // namespace
 
 LiveSession::LiveSession(boost::asio::ip::tcp::socket socket, LiveContext &context)
     : _context(context),
+      _from(AddressOf(socket)),
       _stream(std::move(socket)),
       _timer(_stream.get_executor()),
       _queue(context.Settings.BytesOfViewer)
@@ -56,13 +52,46 @@ void LiveSession::Begin()
     http::async_read(beast::get_lowest_layer(_stream), _buffer, _request,
                      [self = shared_from_this()](const beast::error_code &error, std::size_t)
                      {
-                         if (error)
+                         if (!error)
                          {
-                             return;
+                             self->OnHandshake();
                          }
-                         const std::string why = self->WhyNot();
-                         why.empty() ? self->Accept() : self->Refuse(why);
                      });
+}
+
+void LiveSession::OnHandshake()
+{
+    const auto now = std::chrono::steady_clock::now();
+    const auto pause = _context.Guard && !ShownToken().empty() ? _context.Guard->PauseFor(_from, now)
+                                                               : std::chrono::milliseconds(0);
+    _timer.expires_after(pause);
+    _timer.async_wait(
+        [self = shared_from_this()](const beast::error_code &error)
+        {
+            if (!error)
+            {
+                const std::string why = self->WhyNot();
+                why.empty() ? self->Accept() : self->Refuse(why);
+            }
+        });
+}
+
+std::string_view LiveSession::ShownToken() const
+{
+    constexpr std::string_view Before = "/?token=";
+    const std::string_view target(_request.target().data(), _request.target().size());
+    return target.starts_with(Before) ? target.substr(Before.size()) : std::string_view();
+}
+
+bool LiveSession::ShowsToken(Keys::TokenGuard &guard) const
+{
+    const auto now = std::chrono::steady_clock::now();
+    const bool isRight = !ShownToken().empty() && guard.IsRight(_from, ShownToken(), now);
+    if (const auto line = guard.Line(now))
+    {
+        Output::Talk(*line);
+    }
+    return isRight;
 }
 
 std::string LiveSession::WhyNot() const
@@ -79,13 +108,17 @@ std::string LiveSession::WhyNot() const
     const auto field = _request[http::field::origin];
     const std::string_view origin(field.data(), field.size());
     const auto &more = _context.Settings.Origins;
-    const bool isViewer = origin.empty() || IsThisMachine(origin) ||
+    const bool isViewer = origin.empty() ||
                           std::find(std::begin(Viewers), std::end(Viewers), origin) != std::end(Viewers) ||
                           std::any_of(more.begin(), more.end(),
                                       [&](const std::string &one) { return one == "*" || one == origin; });
     if (!isViewer)
     {
         return "Pages of " + SafeText(std::string(origin)) + " may not look (--origin).";
+    }
+    if (_context.Guard && !ShowsToken(*_context.Guard))
+    {
+        return "Open the whole address that `rabit foxglove` prints: it ends with a token.";
     }
     return _context.Seats >= _context.Settings.MostViewers ? "There are too many viewers." : "";
 }

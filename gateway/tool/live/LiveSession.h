@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "live/LiveContext.h"
@@ -36,8 +37,12 @@ public:
 private:
     using Request = boost::beast::http::request<boost::beast::http::string_body>;
 
+    void OnHandshake();
     // Returns why the request is refused; empty if the viewer may look.
     std::string WhyNot() const;
+    // The token in the address of the request; empty if there is none.
+    std::string_view ShownToken() const;
+    bool ShowsToken(Keys::TokenGuard &guard) const;
     void Refuse(const std::string &why);
     void Accept();
     void Opened();
@@ -50,6 +55,7 @@ private:
     void End();
 
     LiveContext &_context;
+    const boost::asio::ip::address _from;
     boost::beast::websocket::stream<boost::beast::tcp_stream> _stream;
     boost::asio::steady_timer _timer;
     boost::beast::flat_buffer _buffer;

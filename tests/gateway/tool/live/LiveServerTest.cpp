@@ -43,7 +43,7 @@ class Viewer
 {
 public:
     explicit Viewer(const LiveServer &server, const std::string &protocol = "foxglove.websocket.v1",
-                    const std::string &origin = "")
+                    const std::string &origin = "", const std::string &target = "/")
         : _stream(_io)
     {
         // A small receive buffer, so that a viewer that does not read soon stalls.
@@ -63,7 +63,7 @@ public:
                 }
             }));
         websocket::response_type answer;
-        _stream.handshake(answer, "localhost", "/", Error);
+        _stream.handshake(answer, "localhost", target, Error);
         Protocol = std::string(answer[beast::http::field::sec_websocket_protocol]);
     }
 
@@ -266,7 +266,42 @@ TEST(LiveServer, RefusesPagesOfOtherSites)
     EXPECT_TRUE(Viewer(server, "foxglove.websocket.v1", "http://localhost.evil.example.org").Error);
     EXPECT_FALSE(Viewer(server, "foxglove.websocket.v1", "https://viewer.example.org").Error);
     EXPECT_FALSE(Viewer(server, "foxglove.websocket.v1", "https://app.foxglove.dev").Error);
-    EXPECT_FALSE(Viewer(server, "foxglove.websocket.v1", "http://localhost:8080").Error);
+}
+
+// A page that was saved on this machine, and one that another user of the machine serves.
+TEST(LiveServer, RefusesPagesOfThisMachineUnlessTheUserNamesThem)
+{
+    LiveServer server(Anywhere());
+    for (const char *origin :
+         {"file://", "null", "http://localhost:8080", "http://127.0.0.1", "http://[::1]:80"})
+    {
+        EXPECT_TRUE(Viewer(server, "foxglove.websocket.v1", origin).Error) << origin;
+    }
+    LiveServer::Settings settings = Anywhere();
+    settings.Origins = {"file://"};
+    LiveServer named(settings);
+    EXPECT_FALSE(Viewer(named, "foxglove.websocket.v1", "file://").Error);
+    EXPECT_TRUE(Viewer(named, "foxglove.websocket.v1", "http://localhost:8080").Error);
+}
+
+// Other users of this machine reach loopback, too.
+TEST(LiveServer, ShowsNothingToAViewerWithoutTheToken)
+{
+    LiveServer::Settings settings = Anywhere();
+    settings.Token = "0123456789abcdef0123456789abcdef";
+    LiveServer server(settings);
+    const auto isRefused = [&](const std::string &target, const std::string &origin = "")
+    { return Viewer(server, "foxglove.websocket.v1", origin, target).Error.failed(); };
+    for (const std::string &target :
+         {std::string("/"), std::string("/?token="), "/?token=" + settings.Token.substr(1),
+          "/?token=" + settings.Token + "0", "/" + settings.Token, "/x?token=" + settings.Token})
+    {
+        EXPECT_TRUE(isRefused(target)) << target;
+    }
+    EXPECT_EQ(server.Count().Viewers, 0u);
+    EXPECT_FALSE(isRefused("/?token=" + settings.Token));
+    EXPECT_FALSE(isRefused("/?token=" + settings.Token, "https://app.foxglove.dev"));
+    EXPECT_TRUE(isRefused("/?token=" + settings.Token, "https://evil.example.org"));
 }
 
 TEST(LiveServer, TakesSoManyViewersAndNoMore)
