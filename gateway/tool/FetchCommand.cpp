@@ -51,7 +51,8 @@ struct FetchOptions
     std::string File;
 };
 
-// The part of the file that is here. It keeps its bytes when this program ends.
+// The part of the file that is here. It keeps its bytes when this program ends; a part without bytes is
+// removed.
 class PartFile
 {
 public:
@@ -69,10 +70,14 @@ public:
     }
     ~PartFile()
     {
-        if (_file >= 0)
+        struct stat status
         {
-            ::close(_file);
+        };
+        if (_isHere && ::fstat(_file, &status) == 0 && status.st_size == 0)
+        {
+            ::unlink(_path.c_str());
         }
+        ::close(_file);
     }
     PartFile(const PartFile &) = delete;
     PartFile &operator=(const PartFile &) = delete;
@@ -108,6 +113,7 @@ public:
         {
             Fail();
         }
+        _isHere = false;
     }
 
 private:
@@ -119,6 +125,7 @@ private:
     const std::string _path;
     int _file = -1;
     std::uint64_t _size = 0;
+    bool _isHere = true;  // under its own name
 };
 
 // One fetch from a node that is heard.
@@ -278,7 +285,7 @@ int RunFetch(const FetchOptions &options, Wakeup &wakeup)
     {
         ShowFetched(options, fetching.Fetch(), session.Seconds());
     }
-    else if (code == Interrupted)
+    else if (code == Interrupted && fetching.Fetch().Have() > 0)
     {
         Output::Talk(options.To + ".part has " + std::to_string(fetching.Fetch().Have()) +
                      " bytes; the same command goes on from there");

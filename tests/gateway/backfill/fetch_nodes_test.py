@@ -76,6 +76,7 @@ def refuse(fleet, folder):
         assert done.returncode == 1, done
         assert "it has no such file" in done.stderr, done
         assert not (folder / "refused").exists()
+        assert not (folder / "refused.part").exists()
 
 
 def main():
