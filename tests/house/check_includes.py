@@ -74,6 +74,7 @@ OWNERS = [
     (r"zstd\.h", "zstd"),
     (r"zlib\.h", "zlib"),
     (r"CLI/", "CLI11"),
+    (r"boost/asio/ip/address", None),  # a value, which opens no socket
     (r"boost/asio|boost/beast", "network"),
     (r"sys/socket\.h|netinet/|arpa/|netdb\.h", "network"),
 ]
