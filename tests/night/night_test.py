@@ -2,6 +2,7 @@
 """Tests of the programs that run the night and judge its age, without any test of the night."""
 
 import pathlib
+import subprocess
 import sys
 import tempfile
 import time
@@ -68,6 +69,23 @@ class Judging(unittest.TestCase):
             path = pathlib.Path(folder) / "known.md"
             path.write_text("# Known\n- `a.b`: the vendor's fault 17\n- `c.d`:\n", encoding="utf-8")
             self.assertEqual(parts.known(path), {"a.b": "the vendor's fault 17"})
+
+
+class Git(unittest.TestCase):
+    def test_changed_files_are_named_from_the_root(self):
+        with tempfile.TemporaryDirectory() as root:
+            def git(*arguments):
+                subprocess.run(("git", "-C", root, "-c", "user.name=a", "-c", "user.email=a@b", *arguments), check=True,
+                               capture_output=True)
+            file = pathlib.Path(root, "tests", "results.json")
+            file.parent.mkdir()
+            file.write_text("1", encoding="utf-8")
+            git("init")
+            git("add", ".")
+            git("commit", "-m", "one")
+            self.assertEqual(parts.History(root).changed_files(), [])
+            file.write_text("2", encoding="utf-8")
+            self.assertEqual(parts.History(root).changed_files(), ["tests/results.json"])
 
 
 class Results(unittest.TestCase):

@@ -47,7 +47,7 @@ class History:
 
     def changed_files(self):
         """Tracked files that differ from HEAD."""
-        return [line[3:] for line in self._git("status", "--porcelain", "--untracked-files=no").splitlines()]
+        return self._git("diff", "--name-only", "HEAD").splitlines()
 
     def commits_since(self, commit, paths):
         """Number of commits that touch the paths and are not in `commit`'s history; None if git does not know it."""

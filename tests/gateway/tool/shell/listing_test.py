@@ -184,7 +184,7 @@ def nobody_in_the_domain_is_3(rabit):
 def viewers_elsewhere_are_served_only_by_an_option_that_says_what_it_means(rabit):
     done = rabit.run("foxglove", "--listen", "0.0.0.0", "--port", "0")
     assert done.returncode == 2 and done.stdout == "", done
-    assert "would see everything" in done.stderr and "--open-to-everybody-on-the-network" in done.stderr, done
+    assert "there is no TLS" in done.stderr and "--open-to-everybody-on-the-network" in done.stderr, done
 
 
 TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
