@@ -10,6 +10,8 @@
 #include <thread>
 #include <typeinfo>
 
+#include "DomainLease.h"
+
 namespace ThreadsOfStd
 {
 
@@ -74,7 +76,7 @@ protected:
         std::thread([] {}).join();
         isProbe = false;
         Settings.Node = "uav1";
-        Settings.Domain = 77;
+        Settings.Domain = Rabit::Conformance::OwnDomain();
         Settings.Interfaces = {"lo"};
     }
     // Opens a session that can start so many threads. Returns what it says if it cannot be opened.
