@@ -5,7 +5,6 @@
 #include <netinet/in.h>
 
 #include <algorithm>
-#include <chrono>
 #include <condition_variable>
 #include <map>
 #include <mutex>
@@ -19,7 +18,6 @@ namespace Rabit
 namespace
 {
 
-constexpr std::chrono::seconds FirstWait{1};
 constexpr std::chrono::seconds Period{1};
 
 }  // namespace
@@ -33,7 +31,7 @@ struct PeerResolver::Shared
     bool Stop = false;                             // guarded by Mutex
 };
 
-PeerResolver::PeerResolver(std::vector<std::string> hosts, Lookup lookup)
+PeerResolver::PeerResolver(std::vector<std::string> hosts, Lookup lookup, std::chrono::milliseconds firstWait)
     : _shared(std::make_shared<Shared>())
 {
     if (hosts.empty())
@@ -45,7 +43,7 @@ PeerResolver::PeerResolver(std::vector<std::string> hosts, Lookup lookup)
                 { Run(shared, hosts, lookup); })
         .detach();
     std::unique_lock lock(_shared->Mutex);
-    _shared->Event.wait_for(lock, FirstWait, [this] { return _shared->Tried; });
+    _shared->Event.wait_for(lock, firstWait, [this] { return _shared->Tried; });
 }
 
 PeerResolver::~PeerResolver()

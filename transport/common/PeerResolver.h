@@ -2,6 +2,7 @@
 // there is a network.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -17,9 +18,10 @@ public:
     // Returns the IPv4 address of a host now, or none; may block for any time.
     using Lookup = std::function<std::optional<std::string>(const std::string &host)>;
 
-    // Waits at most a second for the first answers, so that names that resolve at once have their address on
-    // return.
-    explicit PeerResolver(std::vector<std::string> hosts, Lookup lookup = &LookUpHost);
+    // Waits at most `firstWait` for the first answers, so that names that resolve at once have their address
+    // on return.
+    explicit PeerResolver(std::vector<std::string> hosts, Lookup lookup = &LookUpHost,
+                          std::chrono::milliseconds firstWait = std::chrono::seconds(1));
     // Does not wait for a lookup in progress, which ends by itself.
     ~PeerResolver();
     PeerResolver(const PeerResolver &) = delete;

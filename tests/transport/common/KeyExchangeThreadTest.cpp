@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <optional>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -97,17 +97,17 @@ TEST_F(KeyExchangeThreadTest, TellsThatExchangesHaveSettledAndThatOneHasBegun)
 {
     std::mutex mutex;
     std::condition_variable changed;
-    std::optional<bool> told;
+    std::set<bool> told;
     const auto wait = [&](bool isSettled)
     {
         std::unique_lock lock(mutex);
-        changed.wait(lock, [&] { return told == isSettled; });
+        changed.wait(lock, [&] { return told.contains(isSettled); });
     };
     Keys.TellSettled(
         [&](bool isSettled)
         {
             const std::lock_guard lock(mutex);
-            told = isSettled;
+            told.insert(isSettled);
             changed.notify_one();
         });
     wait(true);

@@ -12,22 +12,30 @@ namespace
 
 using namespace Rabit;
 
+// Only keeps a broken resolver from waiting for ever.
+constexpr std::chrono::minutes Long{10};
+
 TEST(PeerResolver, KnowsAtOnceWhatIsKnownAtOnce)
 {
-    const PeerResolver resolver({"ground"},
-                                [](const std::string &) { return std::optional<std::string>("10.0.0.9"); });
+    const PeerResolver resolver(
+        {"ground"}, [](const std::string &) { return std::optional<std::string>("10.0.0.9"); }, Long);
     EXPECT_EQ(resolver.AddressOf("ground"), "10.0.0.9");
     EXPECT_EQ(resolver.AddressOf("another"), std::nullopt);
 }
 
 TEST(PeerResolver, WaitsForFirstAnswersThatTakeAMoment)
 {
-    const PeerResolver resolver({"ground", "uav2"},
-                                [](const std::string &) -> std::optional<std::string>
-                                {
-                                    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-                                    return "10.0.0.9";
-                                });
+    const PeerResolver resolver(
+        {"ground", "uav2"},
+        [](const std::string &) -> std::optional<std::string>
+        {
+            for (int i = 0; i < 1000; ++i)
+            {
+                std::this_thread::yield();
+            }
+            return "10.0.0.9";
+        },
+        Long);
     EXPECT_EQ(resolver.AddressOf("uav2"), "10.0.0.9");
 }
 
