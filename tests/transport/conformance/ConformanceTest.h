@@ -58,9 +58,15 @@ protected:
     void ExpectThatALargeSampleCanBeHeld(bool multicast);
     // Expects that best-effort readers of a reliable writer cost it its samples and nothing else.
     void ExpectNothingButSamplesForBestEffortReaders(bool multicast, int destinations);
+    // Expects that a reliable writer sends heartbeats and its reader acknowledges. When this returns, earlier
+    // samples would have had theirs.
+    void ExpectHeartbeatsAndAcknowledgements(bool multicast);
     SessionPtr OpenWith(const std::string &node, bool multicast, std::uint64_t incarnation = 1);
-    bool LateReadersHearOnlyOf(const std::vector<KeyHash> &keys, TransportSession &late,
-                               TransportWriter &writer, std::uint32_t present);
+    // Returns what a new reader in `late` hears of a keyed state writer, up to the marker that is written for
+    // it.
+    std::vector<Received> HeardByALateReader(TransportSession &late, TransportWriter &writer);
+    // Waits until all readers have acknowledged what this keyed state writer has written.
+    bool AllAcknowledged(TransportSession &late, TransportWriter &writer);
 
 private:
     const std::unique_ptr<TransportHarness> _harness = GetParam().Make();

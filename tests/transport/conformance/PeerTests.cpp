@@ -19,9 +19,12 @@ TEST_P(Conformance, SessionsSeeEachOtherAppearButNotThemselves)
     const auto ground = Open("ground", 22, atGround.Handler());
     EXPECT_TRUE(Until([&] { return atUav.Count(Kind::Appeared, "ground", 22) == 1; }));
     EXPECT_TRUE(Until([&] { return atGround.Count(Kind::Appeared, "uav1", 11) == 1; }));
-    Net().Settle();
-    EXPECT_EQ(atUav.CountAll(), 1u);
-    EXPECT_EQ(atGround.CountAll(), 1u);
+    // A session that is opened later appears behind everything that the first two hear of themselves.
+    const auto last = Open("uav2", 33);
+    EXPECT_TRUE(Until([&] { return atUav.Count(Kind::Appeared, "uav2", 33) == 1; }));
+    EXPECT_TRUE(Until([&] { return atGround.Count(Kind::Appeared, "uav2", 33) == 1; }));
+    EXPECT_EQ(atUav.CountAll(), 2u);
+    EXPECT_EQ(atGround.CountAll(), 2u);
 }
 
 TEST_P(Conformance, AClosedSessionHasLeft)
@@ -64,25 +67,28 @@ TEST_P(Conformance, AKilledNodeIsLostAndItsInstancesEnd)
     const auto ground = OpenForgetful("ground", atGround.Handler());
     const auto reader = ground->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
     const auto remote = Net().StartRemote("uav9", 99);
-    ASSERT_TRUE(Until([&] { return atGround.Count(Kind::Appeared, "uav9", 99) == 1; }));
-    ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
+    const auto isLost = [&]
+    { return atGround.Count(Kind::Lost, "uav9", 99) == atGround.Count(Kind::Appeared, "uav9", 99); };
+    ASSERT_TRUE(Until([&] { return atGround.Count(Kind::Appeared, "uav9", 99) >= 1; }));
+    ASSERT_TRUE(Until([&] { return recorder.Count() >= 1; }));
     EXPECT_EQ(recorder.All()[0].Text, "remote");
     EXPECT_EQ(recorder.All()[0].Node, "uav9");
     EXPECT_EQ(recorder.All()[0].Incarnation, 99u);
     remote->Kill();
-    ASSERT_TRUE(Until([&] { return atGround.Count(Kind::Lost, "uav9", 99) == 1; }));
+    // A busy machine may have kept it silent for three seconds before: then it is lost once more.
+    ASSERT_TRUE(Until(isLost));
     EXPECT_EQ(atGround.Count(Kind::Left, "uav9", 99), 0);
-    ASSERT_TRUE(Until([&] { return recorder.Count() == 2; }));
-    EXPECT_FALSE(recorder.All()[1].Alive);
-    EXPECT_EQ(recorder.All()[1].Key, HashOf(7));
+    ASSERT_TRUE(Until([&] { return !recorder.All().back().Alive; }));
+    EXPECT_EQ(recorder.All().back().Key, HashOf(7));
     EXPECT_TRUE(Until([&] { return reader->MatchedWriters() == 0; }));
 }
 
+// The first incarnation is lost although peers are remembered for long, because the second one has appeared.
 TEST_P(Conformance, AKilledNodeThatReturnsIsHeardAgain)
 {
     PeerRecorder atGround;
     SampleRecorder recorder;
-    const auto ground = OpenForgetful("ground", atGround.Handler());
+    const auto ground = Open("ground", 1, atGround.Handler());
     const auto reader = ground->CreateReader(KeyedTopic(), State(), {}, recorder.Handler());
     const auto first = Net().StartRemote("uav9", 98);
     ASSERT_TRUE(Until([&] { return recorder.Count() == 1; }));
@@ -172,8 +178,9 @@ TEST_P(Conformance, AHundredOpenAndCloseCyclesLeakNothing)
     EXPECT_TRUE(Until([&] { return EntriesOf("/proc/self/fd") <= files; }));
     EXPECT_TRUE(Until([&] { return EntriesOf("/proc/self/task") <= threads; }));
     constexpr std::size_t PerCycle = 20 * 1024;
-    const std::size_t now = HeapInUse();
-    EXPECT_LT(now, heap + 100 * PerCycle) << "grew by " << now - heap;
+    std::size_t now = 0;
+    EXPECT_TRUE(Until([&] { return (now = HeapInUse()) < heap + 100 * PerCycle; }))
+        << "grew by " << now - heap;
     ::testing::Test::RecordProperty("heap_growth",
                                     std::to_string(static_cast<long>(now) - static_cast<long>(heap)));
 }

@@ -108,11 +108,6 @@ bool ProcessHarness::Until(const std::function<bool()> &condition)
     return true;
 }
 
-void ProcessHarness::Settle()
-{
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-}
-
 std::unique_ptr<RemoteNode> ProcessHarness::StartRemote(const std::string &node, std::uint64_t incarnation)
 {
     return std::make_unique<PeerProcess>(std::vector<std::string>{Paths::TransportPeer, _backend->Name(),

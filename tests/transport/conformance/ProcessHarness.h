@@ -19,7 +19,6 @@ public:
     Transport &Backend() override { return *_backend; }
     TransportSettings SettingsFor(const std::string &node, std::uint64_t incarnation) override;
     bool Until(const std::function<bool()> &condition) override;
-    void Settle() override;
     std::unique_ptr<RemoteNode> StartRemote(const std::string &node, std::uint64_t incarnation) override;
 
 private:

@@ -209,6 +209,10 @@ TEST_P(Conformance, NoHandlerRunsOnceItsReaderIsGone)
     const auto writing = Open("uav1");
     const auto reading = Open("ground");
     const auto writer = writing->CreateWriter(TextTopic(), Stream(10), {});
+    const auto fence = writing->CreateWriter(TextTopic("Fence"), Stream(10), {});
+    SampleRecorder fences;
+    const auto fenceReader = reading->CreateReader(TextTopic("Fence"), Stream(10), {}, fences.Handler());
+    ASSERT_TRUE(Matched(fence, fenceReader));
     std::jthread blast(
         [&](const std::stop_token &stop)
         {
@@ -233,7 +237,10 @@ TEST_P(Conformance, NoHandlerRunsOnceItsReaderIsGone)
         ASSERT_TRUE(Until([&] { return count > 0; }));
         reader.reset();
         alive = false;
-        Until([&, polls = 0]() mutable { return ++polls > 3; });
+        // The fence comes behind samples that were written for the reader.
+        const std::size_t before = fences.Count();
+        ASSERT_EQ(WriteOnceTaken(*fence, MakeSample(0, "fence"), 1), WriteResult::Ok);
+        ASSERT_TRUE(Until([&] { return fences.Count() > before; }));
         EXPECT_EQ(after, 0);
     }
 }

@@ -121,14 +121,21 @@ TEST_P(Conformance, ATurnOfDiscoveryTakesAboutTheBytesThatItSaid)
     const auto writing = Open("uav1");
     DiscoveryTurns &turns = *writing->Discovery();
     turns.Schedule([] {});
-    const auto writer = writing->CreateWriter(TextTopic(), Telemetry(), {});
-    ASSERT_TRUE(Until([&] { return turns.IsDue() && turns.NextBytes() > 0; }));
-    const std::size_t said = turns.NextBytes();
-    const std::uint64_t before = writing->Counters().DiscoveryBytes;
-    turns.SendNext();
-    const std::uint64_t sent = writing->Counters().DiscoveryBytes - before;
-    EXPECT_GE(sent, said / 2);
-    EXPECT_LE(sent, said * 2);
+    std::vector<WriterPtr> writers;
+    // An announcement of the participant, which takes no turn, may go meanwhile: then the next turn is tried.
+    EXPECT_TRUE(Until(
+        [&]
+        {
+            writers.push_back(
+                writing->CreateWriter(TextTopic("Text" + std::to_string(writers.size())), Telemetry(), {}));
+            EXPECT_TRUE(Until([&] { return turns.IsDue() && turns.NextBytes() > 0; }));
+            const std::size_t said = turns.NextBytes();
+            const std::uint64_t before = writing->Counters().DiscoveryBytes;
+            turns.SendNext();
+            const std::uint64_t sent = writing->Counters().DiscoveryBytes - before;
+            EXPECT_GE(sent, said / 2);
+            return sent <= said * 2;
+        }));
 }
 
 void Conformance::ExpectThatOneNodeCanBeWrittenTo(bool multicast)
@@ -270,8 +277,15 @@ TEST_P(Conformance, AWriterMayEndWithASampleThatIsHeld)
     ASSERT_TRUE(Matched(writer, reader));
     writer->WriteHeld(MakeSample(0, std::string(20'000, 'x')), 1);
     writer.reset();
-    Net().Settle();
-    EXPECT_EQ(recorder.Count(), 0u);
+    // Samples of the next writer go behind all datagrams of the first one, to the same reader.
+    const auto next = writing->CreateWriter(TextTopic(), State(), {});
+    ASSERT_TRUE(Until(
+        [&]
+        {
+            EXPECT_EQ(WriteOnceTaken(*next, MakeSample(0, "fence"), 1), WriteResult::Ok);
+            return recorder.Count() > 0;
+        }));
+    EXPECT_THAT(recorder.Texts(), testing::Each("fence"));
 }
 
 TEST_P(Conformance, AReliableOrKeyedWriterDoesNotWriteToOneNode)
@@ -281,6 +295,25 @@ TEST_P(Conformance, AReliableOrKeyedWriterDoesNotWriteToOneNode)
     const auto keyed = session->CreateWriter(KeyedTopic(), Telemetry(), {});
     EXPECT_EQ(reliable->WriteTo("ground", MakeSample(0, "x"), 1), WriteResult::Failed);
     EXPECT_EQ(keyed->WriteTo("ground", MakeSample(0, "x"), 1), WriteResult::Failed);
+}
+
+// The sessions are new, so that the counters of others stay as they are.
+void Conformance::ExpectHeartbeatsAndAcknowledgements(bool multicast)
+{
+    constexpr int Acknowledgements = 5;
+    const auto writing = OpenWith("uav3", multicast);
+    const auto reading = OpenWith("uav4", multicast);
+    const auto writer = writing->CreateWriter(TextTopic("Fence"), State(), {});
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(TextTopic("Fence"), State(), {}, recorder.Handler());
+    ASSERT_TRUE(Matched(writer, reader));
+    // This session has nothing but acknowledgements to send.
+    for (int i = 0; i < Acknowledgements; ++i)
+    {
+        const std::uint64_t before = reading->Counters().SampleDatagrams;
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "fence"), 1), WriteResult::Ok);
+        ASSERT_TRUE(Until([&] { return reading->Counters().SampleDatagrams > before; }));
+    }
 }
 
 void Conformance::ExpectNothingButSamplesForBestEffortReaders(bool multicast, int destinations)
@@ -305,7 +338,7 @@ void Conformance::ExpectNothingButSamplesForBestEffortReaders(bool multicast, in
         ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "state"), 1), WriteResult::Ok);
     }
     EXPECT_TRUE(Until([&] { return here.Count() > 0 && there.Count() > 0; }));
-    Net().Settle();
+    ExpectHeartbeatsAndAcknowledgements(multicast);
     EXPECT_EQ(writing->Counters().SampleDatagrams,
               before + Samples * static_cast<std::uint64_t>(destinations));
     EXPECT_EQ(first->Counters().SampleDatagrams, 0u);
@@ -336,9 +369,9 @@ TEST_P(Conformance, NothingWaitsForAcknowledgementsOfBestEffortReaders)
     const auto late = Open("late");
     SampleRecorder history;
     const auto another = late->CreateReader(KeyedTopic(), State(), {}, history.Handler());
-    EXPECT_TRUE(Until([&] { return history.Count() > 0; }));
-    Net().Settle();
-    EXPECT_THAT(history.Texts(), testing::ElementsAre("there"));
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(3, "fence"), 4), WriteResult::Ok);
+    ASSERT_TRUE(Until([&] { return history.Count() > 0 && history.All().back().Text == "fence"; }));
+    EXPECT_THAT(history.Texts(), testing::ElementsAre("there", "fence"));
 }
 
 TEST_P(Conformance, ANodeWithoutAReaderOfTheTopicIsNotWrittenTo)
@@ -429,7 +462,13 @@ TEST_P(Conformance, OneWriterWritesToManyNodesEachAloneWhileOneOfThemGoesAndRetu
 // name.
 TEST_P(Conformance, WhatIsWrittenToANodeGoesToItsNewestSessionAndToThoseHeardSinceThatAppeared)
 {
-    const auto writing = OpenWith("ground", false);
+    TransportSettings settings = Net().SettingsFor("ground", 1);
+    settings.Multicast = false;
+    settings.Peers = {"127.0.0.1"};
+    // A former session that is silent for some of these periods is ended: longer than this test takes.
+    settings.AnnouncementPeriod = std::chrono::seconds(40);
+    settings.Lease = std::chrono::seconds(120);
+    const auto writing = Net().Backend().Open(settings, {});
     const auto writer = writing->CreateWriter(TextTopic(), Telemetry(), {});
     SampleRecorder atGround;
     const auto hearing = writing->CreateReader(TextTopic("Voice"), Telemetry(), {}, atGround.Handler());

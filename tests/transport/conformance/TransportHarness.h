@@ -34,8 +34,6 @@ public:
     // Lets time pass until the condition holds. Returns false if it does not hold after a time in which
     // everything that should happen has happened, however slow the machine is.
     virtual bool Until(const std::function<bool()> &condition) = 0;
-    // Lets enough time pass for most things that should not happen to happen.
-    virtual void Settle() = 0;
     // Starts a node elsewhere.
     virtual std::unique_ptr<RemoteNode> StartRemote(const std::string &node, std::uint64_t incarnation) = 0;
 };

@@ -23,7 +23,7 @@ public:
     TransportSettings SettingsFor(const std::string &node, std::uint64_t incarnation) override;
     // Advances by one millisecond at a time, at most 60 simulated seconds.
     bool Until(const std::function<bool()> &condition) override;
-    void Settle() override { Pass(std::chrono::seconds(2)); }
+    // Lets simulated time pass.
     void Pass(std::chrono::nanoseconds time) { _network.AdvanceTo(_network.Now() + time); }
     std::unique_ptr<RemoteNode> StartRemote(const std::string &node, std::uint64_t incarnation) override;
 

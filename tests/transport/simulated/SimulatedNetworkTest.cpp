@@ -165,7 +165,7 @@ TEST_F(SimulatedNetworkTest, ReliableLosesWhatItsHistoryNoLongerHas)
     Write(1, 20);
     Net.Network().ClearFaults();
     ASSERT_TRUE(Net.Until([&] { return Got.Count() >= 5; }));
-    Net.Settle();
+    Net.Pass(2s);
     EXPECT_EQ(Got.Texts(), Numbers(16, 20));
 }
 
@@ -190,7 +190,7 @@ TEST_F(SimulatedNetworkTest, OverwrittenInstancesDoNotBlockTheOthers)
     }
     Net.Network().ClearFaults();
     ASSERT_TRUE(Net.Until([&] { return Got.Count() >= 3; }));
-    Net.Settle();
+    Net.Pass(2s);
     EXPECT_THAT(Got.Texts(), ElementsAre("2", "1", "3"));
 }
 
@@ -202,7 +202,7 @@ TEST_F(SimulatedNetworkTest, DuplicatesAreHandedOverOnce)
     Net.Network().SetFaults("*", "*", twice);
     Connect(Stream(100));
     Write(1, 100);
-    Net.Settle();
+    Net.Pass(2s);
     EXPECT_EQ(Got.Texts(), Numbers(1, 100));
     EXPECT_GT(Net.Network().Traffic().Duplicated, 100u);
 }
@@ -227,7 +227,7 @@ TEST_F(SimulatedNetworkTest, ReorderedBestEffortSamplesAreDroppedIfLate)
     jitter.Jitter = 200ms;
     Net.Network().SetFaults("uav1", "ground", jitter);
     Write(1, 200);
-    Net.Settle();
+    Net.Pass(2s);
     const auto all = Got.All();
     EXPECT_THAT(all.size(), testing::AllOf(Gt(10u), Lt(200u)));
     for (std::size_t i = 1; i < all.size(); ++i)
@@ -263,7 +263,7 @@ TEST_F(SimulatedNetworkTest, ACutLongerThanTheLeaseLosesAVolatileStream)
     ASSERT_TRUE(Net.Until([&] { return IsMatched(); }));
     EXPECT_EQ(AtGround.Count(Kind::Appeared, "uav1", 1), 2);
     Write(601, 610);
-    Net.Settle();
+    Net.Pass(2s);
     auto expected = Numbers(601, 610);
     expected.insert(expected.begin(), "1");
     EXPECT_EQ(Got.Texts(), expected);
@@ -341,7 +341,7 @@ TEST_F(SimulatedNetworkTest, ACrashedNodeIsLostAndItsWritesFail)
     ASSERT_TRUE(Net.Until([&] { return AtGround.Count(Kind::Lost, "uav1", 1) == 1; }));
     Writer.reset();
     Uav.reset();
-    Net.Settle();
+    Net.Pass(2s);
     EXPECT_EQ(AtGround.Count(Kind::Left, "uav1", 1), 0);
     EXPECT_EQ(AtUav.CountAll(), 1u);  // that ground appeared, long ago
 }
@@ -367,7 +367,7 @@ TEST_F(SimulatedNetworkTest, ANodeThatIsAloneAnnouncesItselfToTheGroupAllTheSame
 
 TEST_F(SimulatedNetworkTest, AnAnnouncementOvertakenByTheGoodbyeRevivesNobody)
 {
-    Net.Settle();
+    Net.Pass(2s);
     SimulatedFaults slow;
     slow.Delay = 2s;
     Net.Network().SetFaults("uav1", "ground", slow);
@@ -396,7 +396,7 @@ TEST_F(SimulatedNetworkTest, ALargeSampleDoesNotGetThroughALossyNetworkIfBestEff
     {
         ASSERT_EQ(Writer->Write(RawSample(std::vector<std::uint8_t>(1'000'000)), 1), WriteResult::Ok);
     }
-    Net.Settle();
+    Net.Pass(2s);
     EXPECT_EQ(Got.Count(), 0u);
 }
 
@@ -406,7 +406,7 @@ TEST_F(SimulatedNetworkTest, OtherDomainsAreNotHeard)
     auto settings = Net.SettingsFor("uav9", 1);
     settings.Domain = 9;
     const auto other = Net.Backend().Open(settings, elsewhere.Handler());
-    Net.Settle();
+    Net.Pass(2s);
     EXPECT_EQ(elsewhere.CountAll(), 0u);
     EXPECT_EQ(AtGround.CountAll(), 1u);
 }
