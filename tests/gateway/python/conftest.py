@@ -62,10 +62,26 @@ def run(program, **more):
 
 
 PRELUDE = """
-import asyncio, os, signal, sys, threading, time
+import asyncio, os, signal, sys, tempfile, threading, time
 import rabit
 idl = rabit.load_idl({idl!r})
 network = {network!r}
+
+def forked(function):
+    '''Calls the function in a forked process, which then ends as any interpreter does. Its output goes to a file of its own.
+    Returns a function that waits for that process and asserts its success.'''
+    output = tempfile.TemporaryFile("w+")
+    child = os.fork()
+    if child == 0:
+        os.dup2(output.fileno(), 1)
+        os.dup2(output.fileno(), 2)
+        function()
+        sys.exit()
+    def wait():
+        status = os.waitpid(child, 0)[1]
+        output.seek(0)
+        assert status == 0, output.read()
+    return wait
 """
 
 
