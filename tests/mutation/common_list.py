@@ -130,5 +130,5 @@ MUTATIONS = [
              "return address && shared->Addresses.emplace(host, *address).second;",
              "if (address) { shared->Addresses.emplace(host, *address); } return false;"),
     resolver("the first answers are not waited for",
-             "_shared->Event.wait_for(lock, FirstWait, [this] { return _shared->Tried; });", ""),
+             "_shared->Event.wait_for(lock, firstWait, [this] { return _shared->Tried; });", ""),
 ]
