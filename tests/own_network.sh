@@ -22,3 +22,16 @@ enter_own_network() {
         ip route add default via 192.0.2.1
         exec "$@"' sh "$BASH" "$0" "$@"
 }
+
+# free_domain: prints a DDS domain for this script: 0 in a network of its own, else one whose port no process of this machine
+# has.
+free_domain() {
+    local domain=0 first=$((RANDOM % 80)) i
+    if [ "${RABIT_TEST_IN_NAMESPACE:-}" != yes ]; then
+        for ((i = 0; i < 80; i++)); do
+            domain=$((20 + (first + i) % 80))
+            grep -q "$(printf ':%04X ' $((7400 + 250 * domain)))" /proc/net/udp || break
+        done
+    fi
+    echo "$domain"
+}

@@ -29,12 +29,7 @@ wait_for() {
     fail "no line with '$2' came within four minutes"
 }
 
-# A domain whose port no process of this machine has.
-domain=
-for ((i = 0, first = RANDOM % 80; i < 80; i++)); do
-    domain=$((20 + (first + i) % 80))
-    grep -q "$(printf ':%04X ' $((7400 + 250 * domain)))" /proc/net/udp || break
-done
+domain=$(free_domain)
 
 cat >"$work/uav.yaml" <<YAML
 node: uav1

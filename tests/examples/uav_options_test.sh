@@ -4,6 +4,8 @@
 set -uo pipefail
 uav=$1
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+. "$root/tests/own_network.sh"
+enter_own_network "$@"
 work=$(mktemp -d)
 pid=
 trap 'if [ -n "$pid" ]; then kill -TERM "$pid"; wait "$pid"; fi; rm -rf "$work"' EXIT
@@ -36,7 +38,7 @@ uav --floor 460 --ground-height 430 --clearance 20
 [ "$status" -eq 0 ] || fail "good options are refused"
 
 # An aircraft without a floor reports that when it starts.
-"$uav" --config "$root/examples/swarm/uav.yaml" --domain 98 >"$work/out" 2>"$work/err" &
+"$uav" --config "$root/examples/swarm/uav.yaml" --domain "$(free_domain)" >"$work/out" 2>"$work/err" &
 pid=$!
 for ((tries = 0; tries < 600; tries++)); do
     ! grep -q 'there is no floor' "$work/err" || break
