@@ -39,7 +39,7 @@ def main():
     root, out, programs, version = (*map(pathlib.Path, sys.argv[1:4]), sys.argv[4])
     missing = missing_tools()
     if missing:
-        print(f"skipped: the manual needs {', '.join(missing)}; run docker/install-packages.sh docker/packages-manual.txt")
+        print(f"skipped: the manual needs {', '.join(missing)}; install the packages of docker/packages-manual.txt")
         return 77
     source, html = out / "source", out / "html"
     for folder in source, html:

@@ -1,4 +1,5 @@
 # For tests that need packages of npm; to be sourced.
+. "${BASH_SOURCE[0]%/*}/skip.sh"
 #
 # put_into WORK FILE...: copies the files that are missing or differ. Tests that run beside this one see each file whole.
 put_into() {
@@ -16,8 +17,7 @@ put_into() {
 fetch_npm_packages() {
     local here=$1 package=$2 work=$3
     if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
-        echo "skipped: neither node nor npm is installed"
-        exit 77
+        skip "neither node nor npm is installed" "nodejs npm"
     fi
     mkdir -p "$work"
     exec 9>"$work/.fetching"
@@ -26,7 +26,7 @@ fetch_npm_packages() {
     if [ ! -d "$work/node_modules/$package" ]; then
         { [ "${RABIT_TEST_IN_NAMESPACE:-}" != yes ] &&
             (cd "$work" && timeout 200 npm ci --silent --no-audit --no-fund --ignore-scripts); } ||
-            { echo "skipped: npm could not fetch $package"; exit 77; }
+            skip "npm could not fetch $package"
     fi
     exec 9>&-
 }

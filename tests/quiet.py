@@ -1,8 +1,9 @@
 """Tells how busy this machine is, and waits until it is quiet: for whatever measures time."""
 
 import os
-import sys
 import time
+
+from skipped import skip
 
 QUIET = 0.15  # of one processor
 
@@ -46,9 +47,8 @@ def wait_until_quiet(seconds=600.0, load=Load, pause=time.sleep):
 
 
 def refuse_noise(what, seconds=600.0):
-    """Waits until the machine is quiet. Ends this program with 77, and one line, if it is not within `seconds`."""
+    """Waits until the machine is quiet. Ends this test as skipped if it is not within `seconds`."""
     share = wait_until_quiet(seconds)
     if share >= QUIET:
-        print(f"skipped: {what} is measured only while other programs use less than {QUIET * 100:.0f} % of a processor; "
-              f"now they use {share * 100:.0f} %", flush=True)
-        sys.exit(77)
+        skip(f"{what} is measured only while other programs use less than {QUIET * 100:.0f} % of a processor; "
+             f"now they use {share * 100:.0f} %")

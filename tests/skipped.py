@@ -1,11 +1,20 @@
 #!/usr/bin/env python3
-"""Prints one line for each test that was skipped, with the reason that it gave.
+"""Ends a test as skipped, and reads why tests were skipped.
 
-  skipped.py JUNIT...   files that `ctest --output-junit` wrote"""
+  skipped.py JUNIT...   prints one line for each skipped test; the files are those that `ctest --output-junit` wrote"""
 
 import re
 import sys
 import xml.etree.ElementTree as xml
+
+
+SKIPPED = 77  # the exit code of a test that this machine does not allow
+
+
+def skip(reason, package=""):
+    """Ends this test as skipped. Its last line says why, and names the Debian package that would help."""
+    print(f"skipped: {reason}{'; install ' + package if package else ''}", flush=True)
+    sys.exit(SKIPPED)
 
 
 def reason_of(case):

@@ -10,7 +10,9 @@ import tempfile
 import consumer
 import packages_test
 
-SKIPPED = 77
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from skipped import skip  # noqa: E402
+
 # The tools of a user beside the packages.
 TOOLS = "g++,cmake,ninja-build"
 
@@ -25,8 +27,7 @@ def inside(root, script):
 def main():
     cmake, build = sys.argv[1], pathlib.Path(sys.argv[2])
     if os.geteuid() != 0 or not shutil.which("mmdebstrap"):
-        print("skipped: needs root and mmdebstrap; docker/packages-docker.txt lists it")
-        return SKIPPED
+        skip("needs root and mmdebstrap", "mmdebstrap")
     with tempfile.TemporaryDirectory(prefix="rabit_root_") as folder:
         folder = pathlib.Path(folder)
         root = folder / "root"

@@ -70,7 +70,7 @@ def fly_once(folder, prefix):
                           cwd=folder / "project", env=os.environ | {"PATH": f"{folder / 'project_build'}:{os.environ['PATH']}"},
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=LIMIT_S, check=False)
     if done.returncode == LAB_IMPOSSIBLE:
-        print(f"skipped: the template in the lab: {done.stdout.strip()}")
+        print(f"not judged: the template in the lab: {done.stdout.strip()}")
         return
     if done.returncode not in (0, 1) or harness.ended_badly(folder / "flight"):
         raise AssertionError(f"the flight of the template ended with {done.returncode}:\n{done.stdout}")

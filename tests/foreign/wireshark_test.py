@@ -5,7 +5,6 @@ Usage: wireshark_test.py NODE TRANSPORT,... PLAIN_PROGRAM...
 Ends with 77 where there is no tshark, or no network namespace can be made."""
 
 import collections
-import os
 import pathlib
 import shutil
 import subprocess
@@ -18,7 +17,6 @@ sys.path.insert(0, str(HERE.parent / "integration"))
 import harness  # noqa: E402
 from foreign_test import LIMIT_S, Row  # noqa: E402
 
-SKIPPED = 77
 TOPICS = ("rt/chatter", "rt/latched", "rt/fmu/out/setpoint", "rt/fmu/in/trajectory_setpoint", "rt/words", "rabit/Beat")
 
 
@@ -72,10 +70,9 @@ def record(node, transports, plain, capture):
 
 def main():
     node, transports, plain = sys.argv[1], sys.argv[2].split(","), sys.argv[3:]
-    harness.enter_namespace()
-    if os.environ[harness.IN_NAMESPACE] != "yes" or not shutil.which("tshark"):
-        print("skipped: needs a network namespace, and tshark")
-        sys.exit(SKIPPED)
+    harness.enter_namespace_or_skip()
+    if not shutil.which("tshark"):
+        harness.skip("there is no tshark", "tshark")
     with tempfile.TemporaryDirectory(prefix="rabit_wireshark_") as folder:
         capture = pathlib.Path(folder, "exchange.pcapng")
         failures = record(node, transports, plain, capture)

@@ -54,7 +54,7 @@ class Engine:
             self._folder = pathlib.Path(tempfile.mkdtemp(prefix=self.mark + "-"))
             self._folder.chmod(0o755)
             if not shutil.which("docker"):
-                raise field.Unsupported("no docker; docker/packages-docker.txt lists what to install")
+                raise field.Unsupported("there is no docker; install docker.io")
             if not self._answers():
                 self._start()
         except BaseException:

@@ -10,7 +10,6 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 
 import harness
@@ -18,17 +17,15 @@ from rabit_lab.radio import Unsupported
 
 PREFIX = "rbtfield"
 NAME = re.compile(PREFIX + r"-(\d+)-")
-SKIPPED = 77  # the exit code of a test that this machine does not allow
 
 
 @contextlib.contextmanager
 def skipping():
-    """Ends the program with SKIPPED, and the reason, if the machine does not allow what is needed."""
+    """Ends the test as skipped, with the reason, if the machine does not allow what is needed."""
     try:
         yield
     except Unsupported as reason:
-        print(f"skipped: {reason}")
-        sys.exit(SKIPPED)
+        harness.skip(reason)
 
 
 def run(*argv, text=None):

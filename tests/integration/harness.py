@@ -16,9 +16,10 @@ import time
 from xml.etree import ElementTree
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "gateway" / "lab"))
+sys.path[:0] = [str(ROOT / "gateway" / "lab"), str(ROOT / "tests")]
 # pylint: disable=wrong-import-position,unused-import
 from rabit_lab.processes import Pauses, Process, Processes, die_with_parent, full_pipe, until  # noqa: E402,F401
+from skipped import SKIPPED, skip  # noqa: E402,F401
 
 IN_NAMESPACE = "RABIT_TEST_IN_NAMESPACE"
 LEASES = []  # of domains; they end with this program
@@ -50,6 +51,13 @@ def enter_namespace():
     os.execvp("unshare", ["unshare", "--net", "sh", "-c",
                           "ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo && exec \"$@\"",
                           "sh", sys.executable, *sys.argv])
+
+
+def enter_namespace_or_skip():
+    """As enter_namespace, but the test is skipped where the machine allows no namespace."""
+    enter_namespace()
+    if os.environ[IN_NAMESPACE] != "yes":
+        skip("no network namespace can be made")
 
 
 @functools.cache

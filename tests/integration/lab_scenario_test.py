@@ -11,7 +11,6 @@ import sys
 
 import harness
 
-SKIPPED = 77
 IMPOSSIBLE = 3
 TRIES = 3
 
@@ -23,10 +22,9 @@ def main():
         idle = harness.Idle()
         code = subprocess.run([rabit, "lab", "run", scenario, "--to", results], check=False).returncode
         if code != 1 or not idle.is_busy() or harness.ended_badly(results):
-            return SKIPPED if code == IMPOSSIBLE else code
+            return harness.SKIPPED if code == IMPOSSIBLE else code
         print(f"not judged: other programs left {100 * idle.share():.0f} % of the machine idle", flush=True)
-    print(f"skipped: other programs kept the machine busy in each of {TRIES} runs; run the test on an idle machine")
-    return SKIPPED
+    return harness.skip(f"other programs kept the machine busy in each of {TRIES} runs")
 
 
 if __name__ == "__main__":

@@ -12,7 +12,9 @@ import sys
 HERE = pathlib.Path(__file__).resolve().parent
 INTEROP = HERE.parent / "transport/interop"
 SMOKE = HERE.parent / "gate/smoke.py"
-SKIPPED = 77
+sys.path.insert(0, str(HERE.parent))
+from skipped import SKIPPED, skip  # noqa: E402
+
 # Without the first no namespace can be made; without the second no device in it.
 CAPABILITIES = ("sys_admin", "net_admin")
 
@@ -20,8 +22,7 @@ CAPABILITIES = ("sys_admin", "net_admin")
 def main():
     ledger_node, radio = sys.argv[1:]
     if os.geteuid() != 0 or not shutil.which("setpriv"):
-        print("skipped: needs root and setpriv")
-        return SKIPPED
+        skip("needs root and setpriv", "util-linux")
     scenarios = HERE / "scenarios"
     tests = [[HERE / "field_cleanup_test.py", ledger_node], [HERE / "radio_test.py", radio],
              [HERE / "run_scenario.py", "--ledger-node", ledger_node, scenarios / "baseline"],

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-from lab_test import SKIPPED, Case, check, check_passed
+from lab_test import Case, check, check_passed, skip
 
 USER = 1234
 PROGRAMS = ("sh", "cat", "sleep", "id", "grep", "setsid", "touch")
@@ -61,8 +61,7 @@ def make_image(folder, name):
 def main():
     rabit, uav = (str(pathlib.Path(path).resolve()) for path in sys.argv[1:3])
     if os.geteuid() != 0 or not shutil.which("docker") or docker("info").returncode != 0:
-        print("skipped: no Docker engine answers, or this is not root")
-        sys.exit(SKIPPED)
+        skip("no Docker engine answers, or this is not root", "docker.io")
     folder = pathlib.Path(tempfile.mkdtemp(prefix=f"rbtlab-{os.getpid()}-"))
     folder.chmod(0o755)
     image = f"rabit-lab-test:{os.getpid()}"

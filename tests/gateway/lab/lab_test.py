@@ -19,8 +19,8 @@ from xml.etree import ElementTree
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 sys.path.insert(0, str(ROOT / "tests/integration"))
 import harness  # noqa: E402
+from harness import skip  # noqa: E402
 
-SKIPPED = 77
 IMPOSSIBLE = 3
 LIMIT_S = 400  # only keeps a broken run from hanging the test
 TRIES = 3  # of a run, while the machine is busy
@@ -276,8 +276,7 @@ def check_faults(case):
 
 def skip_unless(judged):
     if not judged:
-        print(f"skipped: other programs kept the machine busy in each of {TRIES} runs; run the test on an idle machine")
-        sys.exit(SKIPPED)
+        skip(f"other programs kept the machine busy in each of {TRIES} runs")
 
 
 def check_radio(case):
@@ -343,8 +342,7 @@ def main():
         for thread in threads:
             thread.join()
         if lan.code == IMPOSSIBLE:
-            print(f"skipped: {lan.said}")
-            sys.exit(SKIPPED)
+            skip(lan.said)
         judged = [lan.judge(check_lan), radio.judge(check_radio), failing.judge(check_failed, REASONS), faults.judge(check_faults),
                   no_start.judge(check_failed, NO_START_REASONS)]
         if subprocess.run(USER_MAKES_NAMESPACES, check=False).returncode == 0:

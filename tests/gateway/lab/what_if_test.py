@@ -60,8 +60,7 @@ def fly(case, rabit, options):
     """Records a flight and replays it. Returns what is wrong that a disturbed machine may explain."""
     case.run()
     if case.code == lab_test.IMPOSSIBLE:
-        print(f"skipped: {case.said}")
-        sys.exit(lab_test.SKIPPED)
+        lab_test.skip(case.said)
     if case.code != 0:
         return [f"the flight ended with {case.code}: {case.said}"]
     folders = [case.results / "replayed", case.results / "again"]
@@ -104,8 +103,7 @@ def main():
             if not judge(lab_test.Case(pathlib.Path(name), radio, text, 3, rabit, uav), rabit, options):
                 unjudged.append(radio)
         if unjudged:
-            print(f"skipped: the machine was disturbed in each of {TRIES} flights over {', '.join(unjudged)}; run the test on an idle machine")
-            sys.exit(lab_test.SKIPPED)
+            lab_test.skip(f"the machine was disturbed in each of {TRIES} flights over {', '.join(unjudged)}")
 
 
 if __name__ == "__main__":

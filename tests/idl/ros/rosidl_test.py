@@ -9,7 +9,9 @@ import subprocess
 import sys
 import tempfile
 
-SKIPPED = 77
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
+from skipped import skip  # noqa: E402
+
 PYTHON = "/usr/bin/python3"  # whose packages are Debian's
 # Runs in a process of its own: it prints its steps to standard output, and breaks if Python redirects that.
 ADAPT = """
@@ -29,8 +31,7 @@ def problem(argv):
 def main():
     ros_idl, idlc, plugin, packages = sys.argv[1:]
     if problem([PYTHON, "-c", "import rosidl_adapter.msg"]):
-        print("skipped: python3-rosidl is not installed; docker/packages-check.txt lists it")
-        sys.exit(SKIPPED)
+        skip("there is no rosidl_adapter", "python3-rosidl")
     messages = sorted(pathlib.Path(packages).resolve().glob("*/msg/*.msg"))
     with tempfile.TemporaryDirectory(prefix="rabit_rosidl_") as work:
         adapted, made, generated = (pathlib.Path(work, name) for name in ("adapted", "made", "generated"))

@@ -7,7 +7,6 @@ Usage: vendor_faults_test.py DATAGRAMS ODD_KEYS PEER TRANSPORT,... PROGRAM...
 DATAGRAMS lists the faults; ODD_KEYS and PEER are programs of ../security, PROGRAMs the plain ones of ../../foreign.
 Needs to make network namespaces; ends with 77 where it may not."""
 
-import os
 import pathlib
 import re
 import signal
@@ -28,7 +27,6 @@ LOOK_S = 2
 # A process that wants more ends.
 MOST_BYTES = 4 << 30
 AT_ONCE = 4
-SKIPPED = 77
 # A file of profiles that defines transports replaces Rabit's, and so leaves the guard out.
 UNGUARDED = """<?xml version="1.0" encoding="UTF-8" ?>
 <profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
@@ -212,10 +210,7 @@ def main():
     datagrams, *programs = sys.argv[1:4]
     transports = sys.argv[4].split(",")
     plain = {("fastdds" if "fastdds" in path else "cyclonedds"): path for path in sys.argv[5:]}
-    harness.enter_namespace()
-    if os.environ[harness.IN_NAMESPACE] != "yes":
-        print("skipped: no network namespaces can be made here")
-        sys.exit(SKIPPED)
+    harness.enter_namespace_or_skip()
     listed = subprocess.run([datagrams], check=True, capture_output=True, text=True).stdout
     faults = [Fault(line) for line in listed.splitlines()]
     installed = [fault for fault in faults if fault.vendor in transports]

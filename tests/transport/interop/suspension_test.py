@@ -22,7 +22,6 @@ from outage_test import Holder  # noqa: E402
 LIMIT_S = 300
 RECOVERY_S = 10
 RATE = 20
-SKIPPED = 77
 NAMES = ("first", "second")
 TOGETHER = re.compile(r"settled round=1 delivered=(\d+) in_doubt=(\d+)")
 WRONG = re.compile("not in order|skipped round|in doubt|garbled|^lost")
@@ -156,8 +155,7 @@ def cases(node, seconds, transports):
 def main():
     node, seconds, transports = sys.argv[1], sys.argv[2], sys.argv[3:]
     if not harness.can_make_namespaces():
-        print("skipped: no network namespaces can be made here")
-        sys.exit(SKIPPED)
+        harness.skip("no network namespace can be made")
     all_cases = [case for length in seconds.split(",") for case in cases(node, float(length), transports)]
     harness.run_at_once(all_cases)
     for case in all_cases:

@@ -21,7 +21,6 @@ from secured_pairs_test import Fleet  # noqa: E402
 
 AT_ONCE = 4  # pairs of nodes
 AT_ONCE_ARM64 = 1  # an emulated node takes about ten times the processor time
-SKIPPED = 77
 OTHER_ROOT = "RABIT_OTHER_ROOT"
 RELEASES = {"bookworm": "trixie", "trixie": "bookworm"}
 BUILD = "docker/install-packages.sh && docker/build-preset.sh release interop_node"
@@ -41,8 +40,7 @@ def make_root(folder, arm64):
     """Returns the exit code of bare.sh."""
     release = "bookworm" if arm64 else RELEASES.get(harness.debian())
     if release is None:
-        print("skipped: needs Debian 12 or 13")
-        return SKIPPED
+        harness.skip("needs Debian 12 or 13")
     return subprocess.run([HERE.parents[2] / "docker" / "bare.sh", "--keep", folder, release,
                            BUILD_ARM64 if arm64 else BUILD], check=False).returncode
 
@@ -80,8 +78,7 @@ def main():
     arm64 = sys.argv[1] == "--arm64"
     rabit, node, *transports = sys.argv[2:] if arm64 else sys.argv[1:]
     if os.geteuid() != 0 or not harness.can_make_namespaces():
-        print("skipped: needs root and network namespaces")
-        sys.exit(SKIPPED)
+        harness.skip("needs root and network namespaces")
     if OTHER_ROOT in os.environ:
         harness.enter_namespace()
         sys.exit(compare(rabit, node, os.environ[OTHER_ROOT],

@@ -7,12 +7,9 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 case=$1
 bin=$2
 work=$3
-if ! command -v chromium >/dev/null; then
-    echo "skipped: chromium is not installed"
-    exit 77
-fi
 root=$(cd "$here/../../../.." && pwd)
 . "$root/tests/npm_packages.sh"
+command -v chromium >/dev/null || skip "there is no browser" chromium
 fetch_npm_packages "$here" playwright-core "$work"
 . "$root/tests/own_network.sh"
 enter_own_network "$@"
