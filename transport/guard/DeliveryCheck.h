@@ -19,10 +19,6 @@ bool IsReader(EntityId entity);
 // No honest writer exceeds this: a thousand samples a second take thirty years to reach it.
 constexpr std::int64_t LargestSequence = std::int64_t{1} << 40;
 
-// Largest width of a gap for the vendor: each number in it costs a step, and up to 56 bytes while an earlier
-// sample is missing.
-constexpr std::int64_t WidestGap = std::int64_t{1} << 20;
-
 // Fields of a sound submessage; those that its kind does not have are 0 or empty.
 struct Delivery
 {

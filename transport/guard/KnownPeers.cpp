@@ -22,8 +22,7 @@ constexpr std::chrono::minutes LongSilence{5};
 // and an outage would lengthen it.
 constexpr std::chrono::milliseconds ShortestPeriod{1000};
 constexpr std::chrono::milliseconds LongestPeriod{15'000};
-// Largest first number of a writer that is believed at once: the vendor walks to it from 1 on, which takes a
-// tenth of a second. A larger one is believed when enough agree.
+// Largest first number of a writer that is believed at once. A larger one is believed when enough agree.
 constexpr std::int64_t LargestFirst = std::int64_t{1} << 22;
 // After this time without a number of a writer, more samples may have been lost than its rate explains.
 constexpr std::chrono::seconds Silence{2};
@@ -38,6 +37,9 @@ constexpr std::int64_t LargestBestEffortStep = 1'000'000;
 // enough numbers agree. The vendor records each number in a gap, and copes with this many.
 constexpr std::int64_t LostInASecond = 1000;
 constexpr std::int64_t LargestLoss = 50'000;
+// They need no announcement.
+constexpr EntityId BuiltinWriters[] = {ParticipantWriter, PublicationsWriter, SubscriptionsWriter,
+                                       LivelinessWriter};
 // Number of agreeing numbers in a row. Heartbeats come every 20 ms, so they need 160 ms.
 constexpr int EnoughAgreeing = 8;
 
@@ -67,6 +69,10 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
         }
         known.Placed = now;
         known.Heard = now;
+        for (const EntityId writer : BuiltinWriters)
+        {
+            known.Writers[writer].Absent.Announced();
+        }
         return true;
     }
     if (_peers.size() >= _sweepAt)
@@ -82,9 +88,7 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
     added.Placed = now;
     added.Period = ShortestPeriod;
     added.Heard = now;
-    // Builtin writers need no announcement.
-    for (const EntityId writer :
-         {ParticipantWriter, PublicationsWriter, SubscriptionsWriter, LivelinessWriter})
+    for (const EntityId writer : BuiltinWriters)
     {
         added.Writers[writer];
     }
@@ -211,6 +215,7 @@ bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, st
         if (agrees)
         {
             known->second.IsBestEffort = isBestEffort;
+            known->second.Absent.Announced();
         }
         return agrees;
     }
@@ -327,6 +332,17 @@ std::int64_t KnownPeers::NumberOf(const GuidPrefix &peer, EntityId writer, std::
     const std::int64_t given = numbers.Samples.Of(number, stamp, now);
     numbers.Highest = numbers.Samples.Highest();
     return given;
+}
+
+AbsentNumbers *KnownPeers::Absent(const GuidPrefix &peer, EntityId writer)
+{
+    const auto found = _peers.find(peer);
+    if (found == _peers.end())
+    {
+        return nullptr;
+    }
+    const auto numbers = found->second.Writers.find(writer);
+    return numbers == found->second.Writers.end() ? nullptr : &numbers->second.Absent;
 }
 
 bool KnownPeers::CanKnowOf(const GuidPrefix &peer, EntityId writer, std::int64_t number) const

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "guard/AbsentNumbers.h"
 #include "guard/Claim.h"
 #include "guard/PeerVoice.h"
 #include "guard/RtpsMessage.h"
@@ -16,12 +17,11 @@
 namespace Rabit::Rtps
 {
 
-// A writer's numbers rise in steps. If a number jumped, the vendor would walk through millions of samples
-// that never existed, and ignore all samples below that number. So a jump is believed only if the writer's
-// rate explains it, or the time for which it was not heard, or if several numbers in a row agree on it.
-// Bounded: a full table of peers takes no new one until one in it was silent for a minute. A table that has
-// doubled forgets all peers that were silent for five minutes. A full table of writers or readers
-// forgets one. Not thread-safe.
+// A writer's numbers rise in steps. If a number jumped, the vendor would ignore all samples below it. So a
+// jump is believed only if the writer's rate explains it, or the time for which it was not heard, or if
+// several numbers in a row agree on it. Bounded: a full table of peers takes no new one until one in it was
+// silent for a minute. A table that has doubled forgets all peers that were silent for five minutes. A full
+// table of writers or readers forgets one. Not thread-safe.
 class KnownPeers
 {
 public:
@@ -73,6 +73,9 @@ public:
     // differs from `number` only for best-effort writers. The writer must have been announced.
     std::int64_t NumberOf(const GuidPrefix &peer, EntityId writer, std::int64_t number, std::uint64_t stamp,
                           TimePoint now);
+    // The numbers of an announced writer that the vendor may be told to be absent. Null: it was not
+    // announced.
+    AbsentNumbers *Absent(const GuidPrefix &peer, EntityId writer);
     // True if an announced writer can know the state of the samples up to this number.
     bool CanKnowOf(const GuidPrefix &peer, EntityId writer, std::int64_t number) const;
 
@@ -103,6 +106,7 @@ private:
         std::uint32_t OurCount = 0;
         bool IsBestEffort = false;
         SampleNumbers Samples;
+        AbsentNumbers Absent;
     };
     struct Reader
     {

@@ -28,20 +28,6 @@ std::uint64_t StampOf(const Submessage &submessage)
     return seconds << 32 | body.U32();
 }
 
-// Cuts a gap to WidestGap numbers. The reader then requests the next ones, and gets another gap for these.
-void NarrowGap(const Submessage &submessage, const Delivery &delivery)
-{
-    constexpr std::size_t BaseAt = 16;  // 9.4.5.6: behind two entities and the first number
-    constexpr std::size_t BitsAt = 24;
-    RtpsReader body = submessage.Reader();
-    body.Skip(BaseAt);
-    if (body.Sequence() - delivery.First > WidestGap)
-    {
-        WriteSequence(submessage.Body().subspan(BaseAt), delivery.First + WidestGap, submessage.LittleEndian);
-        Write(submessage.Body().subspan(BitsAt, 4), 0, submessage.LittleEndian);
-    }
-}
-
 }  // namespace
 
 bool RtpsGuard::Admit(std::span<std::uint8_t> datagram, const HostAddress &from, TimePoint now,
@@ -246,9 +232,9 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     {
         verdict = Compare(submessage, delivery, passage);
     }
-    if (verdict == Verdict::Pass && submessage.Kind == SubmessageKind::Gap)
+    if (verdict == Verdict::Pass && _vendor == Vendor::FastDds)
     {
-        NarrowGap(submessage, delivery);
+        verdict = CutAbsent(submessage, delivery, passage);
     }
     passage.Useful = passage.Useful || verdict == Verdict::Pass;
     return verdict;
@@ -405,11 +391,34 @@ bool RtpsGuard::GroupReaches(const HostAddress &host, TimePoint since)
 void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)
 {
     const std::lock_guard lock(_mutex);
-    _sent.Sent(datagram);
     if (HasRtpsHeader(datagram))
     {
         _own = SenderOf(datagram);
     }
+    GuidPrefix to{};
+    // The datagram is our own and therefore sound. It has few submessages.
+    VisitSubmessages(datagram,
+                     [&](const ConstSubmessage &part)
+                     {
+                         RtpsReader body = part.Reader();
+                         if (part.Kind == SubmessageKind::DataFrag)
+                         {
+                             _sent.Sent(body);
+                         }
+                         else if (part.Kind == SubmessageKind::InfoDestination)
+                         {
+                             to = PrefixOf(part.Body());
+                         }
+                         else if (part.Kind == SubmessageKind::AckNack)
+                         {
+                             body.Skip(sizeof(EntityId));
+                             const EntityId writer = body.Entity();
+                             if (AbsentNumbers *const absent = _peers.Absent(to, writer))
+                             {
+                                 absent->Acknowledged(body.Sequence());
+                             }
+                         }
+                     });
 }
 
 }  // namespace Rabit::Rtps

@@ -24,6 +24,7 @@
 #include "guard/PeerObserver.h"
 #include "guard/RtpsMessage.h"
 #include "guard/SentFragments.h"
+#include "guard/WalkBudget.h"
 
 namespace Rabit::Rtps
 {
@@ -52,19 +53,20 @@ public:
     // It may change the bytes.
     using Deliver = std::function<void(std::span<std::uint8_t>)>;
 
-    // Checked: requests for fragments are compared with what was sent, for a vendor that would read past the
-    // end of a sample. The guard must then be told of all that is sent.
-    enum class Requests
+    // Fast DDS reads past the end of a sample if a fragment is requested that it has not, and walks through
+    // all numbers that are declared absent. For it both are compared with what was sent, so the guard must be
+    // told of all that is sent.
+    enum class Vendor
     {
-        Checked,
-        AsTheyCome
+        FastDds,
+        CycloneDds
     };
 
     // `period`: announcement period of all participants. `goodbyes`: where to note those of known
     // participants; a session behind the guard shares them.
-    RtpsGuard(Mode mode, std::chrono::milliseconds period, Requests requests = Requests::Checked,
+    RtpsGuard(Mode mode, std::chrono::milliseconds period, Vendor vendor = Vendor::FastDds,
               std::shared_ptr<RecentGoodbyes> goodbyes = std::make_shared<RecentGoodbyes>())
-        : _mode(mode), _requests(requests), _goodbyes(std::move(goodbyes)), _replies(period)
+        : _mode(mode), _vendor(vendor), _goodbyes(std::move(goodbyes)), _replies(period)
     {
     }
 
@@ -149,18 +151,21 @@ private:
     bool IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     // Compares with what was sent before.
     Verdict Compare(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
+    // Cuts the range of absent numbers in a heartbeat or a gap, for a vendor that walks through it.
+    Verdict CutAbsent(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     void ReplaceNumber(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
     void ReplaceAnnouncement(const Submessage &submessage, const Delivery &delivery,
                              const GuidPrefix &sender);
     void ReplaceCount(const Submessage &submessage, const Delivery &delivery, const GuidPrefix &sender);
 
     const Mode _mode;
-    const Requests _requests;
+    const Vendor _vendor;
     const std::shared_ptr<RecentGoodbyes> _goodbyes;
     PeerObserver *_observer = nullptr;
     AuthenticationThread *_authentication = nullptr;
     std::mutex _mutex;              // several sockets receive at once
     KnownPeers _peers;              // guarded by _mutex
+    WalkBudget _walk;               // guarded by _mutex
     SentFragments _sent;            // guarded by _mutex
     DiscoveryFragments _fragments;  // guarded by _mutex
     AnnouncementReplies _replies;   // guarded by _mutex

@@ -96,7 +96,7 @@ RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delive
             }
             break;
         case SubmessageKind::NackFrag:
-            if (_requests == Requests::Checked &&
+            if (_vendor == Vendor::FastDds &&
                 !_sent.Has(delivery.Writer, delivery.First, delivery.LastFragment))
             {
                 return Verdict::Refuse;
@@ -112,6 +112,48 @@ RtpsGuard::Verdict RtpsGuard::Compare(const Submessage &submessage, const Delive
     if (submessage.Kind == SubmessageKind::Heartbeat)
     {
         ReplaceCount(submessage, delivery, passage.Sender);
+    }
+    return Verdict::Pass;
+}
+
+RtpsGuard::Verdict RtpsGuard::CutAbsent(const Submessage &submessage, const Delivery &delivery,
+                                        const Passage &passage)
+{
+    constexpr std::size_t FirstAt = 8;  // 9.4.5.6 and 9.4.5.7: behind two entities
+    constexpr std::size_t BaseAt = 16;
+    constexpr std::size_t BitsAt = 24;
+    const auto at = [&](std::size_t position) { return submessage.Body().subspan(position); };
+    // Without an announcement (shared memory, keys) it is not known where the vendor is.
+    AbsentNumbers unknown;
+    AbsentNumbers *absent = _peers.Absent(passage.Sender, delivery.Writer);
+    if (absent == nullptr)
+    {
+        unknown.Acknowledged(delivery.First);
+        absent = &unknown;
+    }
+    if (submessage.Kind == SubmessageKind::Data)
+    {
+        absent->Given(delivery.First);
+    }
+    else if (submessage.Kind == SubmessageKind::Heartbeat)
+    {
+        WriteSequence(at(FirstAt), absent->FirstOf(delivery.First, _walk, passage.Now),
+                      submessage.LittleEndian);
+    }
+    else if (submessage.Kind == SubmessageKind::Gap)
+    {
+        const std::int64_t base = RtpsReader(at(BaseAt), submessage.LittleEndian).Sequence();
+        const auto part = absent->PartOf({delivery.First, base, delivery.Last}, _walk, passage.Now);
+        if (!part)
+        {
+            return Verdict::Ignore;
+        }
+        WriteSequence(at(FirstAt), part->First, submessage.LittleEndian);
+        if (part->Base < base)
+        {
+            WriteSequence(at(BaseAt), part->Base, submessage.LittleEndian);
+            Write(at(BitsAt).first(4), 0, submessage.LittleEndian);
+        }
     }
     return Verdict::Pass;
 }

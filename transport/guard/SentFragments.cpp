@@ -5,20 +5,6 @@
 namespace Rabit::Rtps
 {
 
-void SentFragments::Sent(std::span<const std::uint8_t> datagram)
-{
-    // It is our own and therefore sound. Beside fragments a datagram has only a time and a destination, so
-    // the walk is short.
-    VisitSubmessages(datagram,
-                     [this](const ConstSubmessage &part)
-                     {
-                         if (part.Kind == SubmessageKind::DataFrag)
-                         {
-                             Sent(part.Reader());
-                         }
-                     });
-}
-
 void SentFragments::Sent(RtpsReader fragment)
 {
     fragment.Skip(WriterInData);

@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <utility>
 
 #include "common/RecentMap.h"
@@ -17,16 +16,14 @@ namespace Rabit::Rtps
 class SentFragments
 {
 public:
-    // Records the fragments in a datagram of our own.
-    void Sent(std::span<const std::uint8_t> datagram);
+    // Records the body of a DATA_FRAG of our own, which is sound.
+    void Sent(RtpsReader fragment);
     // True if a sample was sent that has a fragment of this number, and all before it.
     bool Has(EntityId writer, std::int64_t sequence, std::uint32_t fragment) const;
 
     std::size_t Size() const { return _fragments.Size(); }
 
 private:
-    void Sent(RtpsReader fragment);
-
     using Sample = std::pair<EntityId, std::int64_t>;
 
     // More than a history keeps of samples that are large enough for fragments.

@@ -44,6 +44,7 @@ Bytes SampleWithInlineQosOutside();       // CVE-2023-42459
 Bytes FragmentWithInlineQosOutside();     // CVE-2023-50716
 Bytes SampleWithInlineQosBeyondItsEnd();  // CVE-2024-28231
 Bytes GapOfBillions();                    // CVE-2025-64438
+std::vector<Bytes> RisingHeartbeats();    // CVE-2025-65016
 Bytes Goodbye();                          // CVE-2023-50257
 Bytes PartitionWithoutAnEnd();            // Fast DDS issue 6437
 Bytes AcknowledgementOfTooManyBits();     // Fast DDS issues 1337 and 1338

@@ -151,6 +151,20 @@ Bytes GapOfBillions()
     return Gapped(2, std::int64_t{1} << 39);
 }
 
+// Heartbeats of a discovery writer whose first number is 2^39 and rises: all before it are lost, says the
+// writer, and the vendor steps through them.
+std::vector<Bytes> RisingHeartbeats()
+{
+    constexpr std::uint32_t Count = 12;
+    std::vector<Bytes> all = {Announcement(), HonestHeartbeat()};
+    for (std::uint32_t i = 0; i < Count; ++i)
+    {
+        const std::int64_t first = (std::int64_t{1} << 39) + i;
+        all.push_back(Message(Heartbeat, HeartbeatBody(first, first, i + 2, PublicationsWriter)));
+    }
+    return all;
+}
+
 // A disposal of the participant, in plain: anybody can send it in another's name.
 Bytes Goodbye()
 {
@@ -202,6 +216,7 @@ std::vector<Fault> FastDdsFaults()
         of("CVE-2023-50716", {Announcement(), FragmentWithInlineQosOutside()}),
         of("CVE-2024-28231", {Announcement(), SampleWithInlineQosBeyondItsEnd()}),
         of("CVE-2025-64438", {Announcement(), GapOfBillions()}),
+        of("CVE-2025-65016", RisingHeartbeats()),
         of("CVE-2023-50257", {Announcement(), Goodbye()}),
         of("issue-6437", {Announcement(), PartitionWithoutAnEnd()}),
         of("issue-1337", {Announcement(), AcknowledgementOfTooManyBits()}),

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "common/RtpsReader.h"
 #include "faults/Datagrams.h"
 #include "guard/DeliveryCheck.h"
 #include "guard/Gate.h"
@@ -106,6 +107,24 @@ TEST_F(FastDdsFaults, Cve2025_64438_AGapOfBillionsIsStopped)
     EXPECT_TRUE(Guard.Stops(GapOfBillions()));
 }
 
+TEST_F(FastDdsFaults, Cve2025_65016_RisingHeartbeatsAreCutToTheStepsThatTheirDatagramsPayFor)
+{
+    using Rabit::Rtps::WalkBudget;
+    constexpr std::size_t FirstAt = 20 + 4 + 8;
+    const auto heartbeats = Faults::RisingHeartbeats();
+    std::int64_t reached = 0;
+    for (const Bytes &heartbeat : heartbeats)
+    {
+        Guard.Admit(heartbeat);
+        for (const Bytes &given : Guard.Handed)
+        {
+            reached = std::max(reached,
+                               Rabit::Rtps::RtpsReader(std::span(given).subspan(FirstAt), true).Sequence());
+        }
+    }
+    EXPECT_LE(reached, static_cast<std::int64_t>(heartbeats.size()) * WalkBudget::Free);
+}
+
 // The guard cannot know there what the writer has sent. It lets through as many numbers as cost the vendor
 // little.
 TEST(FastDdsFaultsWithKeys, Cve2025_64438_AGapOfBillionsIsNarrowed)
@@ -116,7 +135,7 @@ TEST(FastDdsFaultsWithKeys, Cve2025_64438_AGapOfBillionsIsNarrowed)
     ASSERT_EQ(guard.Handed.size(), 1u);
     const Bytes &gap = guard.Handed.front();
     EXPECT_EQ(Bytes(gap.begin() + BaseAt, gap.begin() + BaseAt + 8),
-              RtpsBytes::Sequence(2 + Rabit::Rtps::WidestGap));
+              RtpsBytes::Sequence(2 + Rabit::Rtps::WalkBudget::Burst + Rabit::Rtps::WalkBudget::Free));
 }
 
 TEST(FastDdsFaultsWithKeys, Cve2025_64438_AGapInPlainIsStoppedWhereAllIsProtected)

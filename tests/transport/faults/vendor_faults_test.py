@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Datagrams of published faults of the vendors, sent by a stranger on loopback. Prints for each fault what the installed
 vendor does without the guard: a process of its own, which may end. Fails only if nodes with the guard end, or do not hear
-each other afterwards.
+each other and a newcomer afterwards.
 
 Usage: vendor_faults_test.py DATAGRAMS ODD_KEYS PEER TRANSPORT,... PROGRAM...
 DATAGRAMS lists the faults; ODD_KEYS and PEER are programs of ../security, PROGRAMs the plain ones of ../../foreign.
@@ -156,8 +156,8 @@ class Unguarded:
 
 
 class Guarded:
-    """Two nodes over a vendor, with keys or without, which get all faults, and at last goodbyes in each other's names. They
-    hear each other all the while, or again."""
+    """Two nodes over a vendor, with keys or without, which get all faults, then meet a third one, and at last get goodbyes in
+    each other's names. They hear each other all the while, or again."""
 
     def __init__(self, faults, transport, keys, domain, programs):
         self.faults, self.transport, self.keys, self.domain, self.programs = faults, transport, keys, domain, programs
@@ -190,6 +190,11 @@ class Guarded:
                     raise AssertionError(f"{name} ended with {node.exit_code(LIMIT_S)} after {fault.name}")
         for node, other in pairs:
             self.hears_more(node, other)
+        newcomer = processes.start([self.programs[1], self.transport, "newcomer", self.domain,
+                                    *(keys.of("newcomer", self.transport, self.domain) if self.keys else ["-", "encrypt"]), "lo"])
+        for node, name in zip(nodes, names):
+            self.hears_more(node, "newcomer")
+            self.hears_more(newcomer, name)
         self.forge_goodbyes()
         for node, other in pairs:
             gone = [when for when, text in node.lines if text == f"gone {other}"]
@@ -201,7 +206,7 @@ class Guarded:
         fault = next(fault for fault in self.faults if fault.name == FORGED_GOODBYE)
         *_, goodbye = fault.datagrams
         forged = Fault(f"{fault.name} {fault.vendor} plain")
-        for name in prefixes(self.domain, 2, stranger=prefix_of(goodbye)):
+        for name in prefixes(self.domain, 3, stranger=prefix_of(goodbye)):
             forged.datagrams.append(goodbye.replace(prefix_of(goodbye), name))
         forged.send(self.domain)
 

@@ -15,8 +15,8 @@ class Gate
 {
 public:
     explicit Gate(Rabit::Rtps::RtpsGuard::Mode mode = Rabit::Rtps::RtpsGuard::Mode::Full,
-                  Rabit::Rtps::RtpsGuard::Requests requests = Rabit::Rtps::RtpsGuard::Requests::Checked)
-        : _guard(mode, std::chrono::seconds(10), requests)
+                  Rabit::Rtps::RtpsGuard::Vendor vendor = Rabit::Rtps::RtpsGuard::Vendor::FastDds)
+        : _guard(mode, std::chrono::seconds(10), vendor)
     {
     }
 

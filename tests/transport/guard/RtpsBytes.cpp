@@ -112,9 +112,9 @@ Bytes GapBody(std::int64_t start, std::int64_t base, std::uint32_t bits, EntityI
     return Join({Ids(0, writer), Sequence(start), Sequence(base), Bits(bits)});
 }
 
-Bytes AckNackBody(std::int64_t base, std::uint32_t bits, std::uint32_t count)
+Bytes AckNackBody(std::int64_t base, std::uint32_t bits, std::uint32_t count, EntityId writer)
 {
-    return Join({Ids(UserReader), Sequence(base), Bits(bits), U32(count)});
+    return Join({Ids(UserReader, writer), Sequence(base), Bits(bits), U32(count)});
 }
 
 Bytes NackFragBody(std::int64_t sequence, std::uint32_t base, std::uint32_t bits, std::uint32_t count)

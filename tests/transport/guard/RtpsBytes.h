@@ -59,7 +59,7 @@ Bytes FragmentBody(std::uint32_t first, std::uint16_t count, std::uint16_t size,
                    std::size_t bytes, EntityId writer = UserWriter);
 Bytes HeartbeatBody(std::int64_t first, std::int64_t last, std::uint32_t count, EntityId writer = UserWriter);
 Bytes GapBody(std::int64_t start, std::int64_t base, std::uint32_t bits = 0, EntityId writer = UserWriter);
-Bytes AckNackBody(std::int64_t base, std::uint32_t bits, std::uint32_t count);
+Bytes AckNackBody(std::int64_t base, std::uint32_t bits, std::uint32_t count, EntityId writer = UserWriter);
 Bytes NackFragBody(std::int64_t sequence, std::uint32_t base, std::uint32_t bits, std::uint32_t count);
 
 // Parameters of discovery, and lists of them with the sentinel at the end.

@@ -387,7 +387,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       _cardRoutes(settings.AnnouncementPeriod),
       _goodbyes(std::move(goodbyes)),
       // The vendor itself checks which fragments it has sent.
-      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Requests::AsTheyCome,
+      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Vendor::CycloneDds,
              _goodbyes),
       _keys(turns, settings.MaxDatagram)
 {

@@ -53,7 +53,7 @@ public:
         : ChainedUdp(descriptor),
           _descriptor(descriptor),
           _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod,
-                 RtpsGuard::Requests::Checked, descriptor.Chosen().Goodbyes),
+                 RtpsGuard::Vendor::FastDds, descriptor.Chosen().Goodbyes),
           _input(descriptor.Chosen().GroupPort,
                  AwaitsProtectedAnnouncements && descriptor.Chosen().Authentication != nullptr),
           _output(_descriptor.Chosen(), _guard, *low_level_transport_),
