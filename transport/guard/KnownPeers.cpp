@@ -65,7 +65,6 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
             }
             known.Place = Claim(digest);
             known.NextIsNews = true;
-            known.IsNewThere = true;
         }
         known.Placed = now;
         known.Heard = now;
@@ -97,8 +96,7 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
 
 void KnownPeers::IsAt(const GuidPrefix &peer, std::span<const HostAddress> hosts, const HostAddress &from)
 {
-    Peer &known = _peers.at(peer);
-    known.Speaks.Announced(hosts, from, std::exchange(known.IsNewThere, false));
+    _peers.at(peer).Speaks.Announced(hosts, from);
 }
 
 bool KnownPeers::SpeaksFrom(const GuidPrefix &peer, const HostAddress &from) const

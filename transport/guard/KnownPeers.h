@@ -118,7 +118,6 @@ private:
         Claim<std::uint64_t> Place;
         PeerVoice Speaks;
         bool ListensToGroup = false;
-        bool IsNewThere = true;              // since IsAt
         TimePoint Placed{};                  // when its addresses were last announced
         std::chrono::milliseconds Period{};  // interval at which they are announced
         TimePoint Heard{};

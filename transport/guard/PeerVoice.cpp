@@ -24,9 +24,9 @@ bool IsLoopback(const HostAddress &host)
 
 }  // namespace
 
-void PeerVoice::Announced(std::span<const HostAddress> hosts, const HostAddress &from, bool anew)
+void PeerVoice::Announced(std::span<const HostAddress> hosts, const HostAddress &from)
 {
-    if (anew)
+    if (!std::equal(hosts.begin(), hosts.end(), _hosts.begin(), _hosts.end()))
     {
         _hosts.assign(hosts.begin(), hosts.end());
         _heardThere = false;

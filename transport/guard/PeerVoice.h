@@ -33,9 +33,9 @@ public:
         std::uint64_t Content = 0;
     };
 
-    // An announcement of the participant was believed. It names `hosts` and came from `from`. `anew`: the
-    // first one, or the first since it has moved.
-    void Announced(std::span<const HostAddress> hosts, const HostAddress &from, bool anew);
+    // An announcement of the participant was believed. It names `hosts` and came from `from`. Other hosts
+    // than before: the participant has moved.
+    void Announced(std::span<const HostAddress> hosts, const HostAddress &from);
     // True if the participant speaks from `from`, or if `from` is unknown.
     bool IsAt(const HostAddress &from) const;
     // True if the claim should be processed.

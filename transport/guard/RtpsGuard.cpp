@@ -267,7 +267,14 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return Verdict::Drop;
     }
-    if (delivery.HasKeyPayload || delivery.Payload.empty())
+    const bool isKeyAlone = delivery.HasKeyPayload || delivery.Payload.empty();
+    // Nobody signs goodbyes.
+    if (IsSecured() && delivery.Writer == ParticipantWriter && (isKeyAlone || !delivery.Alive) &&
+        !_peers.SpeaksFrom(passage.Sender, passage.From))
+    {
+        return Verdict::Refuse;
+    }
+    if (isKeyAlone)
     {
         if (delivery.Writer == ParticipantWriter)
         {
@@ -347,9 +354,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
     {
         return Verdict::Refuse;
     }
+    // With keys the handshake confirms these addresses.
+    _peers.IsAt(passage.Sender, announcement.Hosts, passage.From);
     if (_mode == Mode::Full)
     {
-        _peers.IsAt(passage.Sender, announcement.Hosts, passage.From);
         _peers.SetListensToGroup(passage.Sender, announcement.ListensToGroup);
     }
     if (isFromNetwork)

@@ -20,7 +20,7 @@ constexpr HostAddress Elsewhere = {10, 0, 0, 66};
 class PeerVoiceTest : public testing::Test
 {
 protected:
-    PeerVoiceTest() { Place.Announced(std::vector{Home, SecondHome}, Home, true); }
+    PeerVoiceTest() { Place.Announced(std::vector{Home, SecondHome}, Home); }
 
     bool Believes(const HostAddress &from, std::uint64_t about = 1, std::uint64_t content = 1)
     {
@@ -73,25 +73,25 @@ TEST_F(PeerVoiceTest, AnAddressThatIsNotKnownIsAsGoodAsAny)
 // For example behind an address translation, or on the far network of a host with several.
 TEST_F(PeerVoiceTest, WhoIsOnlyHeardFromAnAddressThatItDoesNotNameSpeaksFromThere)
 {
-    Place.Announced(std::vector{Home}, Elsewhere, true);
+    Place.Announced(std::vector{Home}, Elsewhere);
     EXPECT_TRUE(Believes(Elsewhere));
     EXPECT_TRUE(Believes(Home));
 }
 
 TEST_F(PeerVoiceTest, WhoIsOnlyHeardFromSeveralOthersSpeaksFromAll)
 {
-    Place.Announced(std::vector{Home}, Elsewhere, true);
-    Place.Announced(std::vector{Home}, SecondHome, false);
+    Place.Announced(std::vector{Home}, Elsewhere);
+    Place.Announced(std::vector{Home}, SecondHome);
     EXPECT_TRUE(Believes(Elsewhere));
     EXPECT_TRUE(Believes(SecondHome));
 }
 
 TEST_F(PeerVoiceTest, RepeatingAnAnnouncementFromEverywhereGivesFewAVoice)
 {
-    Place.Announced(std::vector{Home}, Elsewhere, true);
+    Place.Announced(std::vector{Home}, Elsewhere);
     for (std::uint8_t host = 100; host < 200; ++host)
     {
-        Place.Announced(std::vector{Home}, {10, 0, 0, host}, false);
+        Place.Announced(std::vector{Home}, {10, 0, 0, host});
     }
     EXPECT_FALSE(Believes(Elsewhere));
     EXPECT_FALSE(Believes({10, 0, 0, 195}));
@@ -99,15 +99,15 @@ TEST_F(PeerVoiceTest, RepeatingAnAnnouncementFromEverywhereGivesFewAVoice)
 
 TEST_F(PeerVoiceTest, RepeatingAnAnnouncementGivesNobodyAVoice)
 {
-    Place.Announced(std::vector{Home, SecondHome}, Elsewhere, false);
+    Place.Announced(std::vector{Home, SecondHome}, Elsewhere);
     EXPECT_FALSE(Believes(Elsewhere));
     EXPECT_TRUE(Believes(Home));
 }
 
 TEST_F(PeerVoiceTest, WhoRepeatedAnAnnouncementFirstLosesItsVoiceWhenTheOwnerIsHeard)
 {
-    Place.Announced(std::vector{Home}, Elsewhere, true);
-    Place.Announced(std::vector{Home}, Home, false);
+    Place.Announced(std::vector{Home}, Elsewhere);
+    Place.Announced(std::vector{Home}, Home);
     EXPECT_FALSE(Believes(Elsewhere));
 }
 
@@ -120,7 +120,7 @@ TEST_F(PeerVoiceTest, TheOwnHostIsBelievedWhateverWasAnnounced)
 
 TEST_F(PeerVoiceTest, WhoMovesSpeaksFromItsNewPlaceAlone)
 {
-    Place.Announced(std::vector{Elsewhere}, Elsewhere, true);
+    Place.Announced(std::vector{Elsewhere}, Elsewhere);
     EXPECT_TRUE(Believes(Elsewhere));
     EXPECT_FALSE(Believes(Home));
 }
@@ -146,8 +146,8 @@ TEST_F(PeerVoiceTest, WhoHasMuchToSayFromElsewhereIsBelievedInTheEnd)
 
 TEST_F(PeerVoiceTest, WhoAnnouncesItselfFromThisHostGivesNobodyElseAVoice)
 {
-    Place.Announced(std::vector{Home}, {127, 0, 0, 1}, true);
-    Place.Announced(std::vector{Home}, Elsewhere, false);
+    Place.Announced(std::vector{Home}, {127, 0, 0, 1});
+    Place.Announced(std::vector{Home}, Elsewhere);
     EXPECT_FALSE(Believes(Elsewhere));
 }
 
