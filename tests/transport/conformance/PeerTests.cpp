@@ -171,15 +171,18 @@ TEST_P(Conformance, AHundredOpenAndCloseCyclesLeakNothing)
     const auto files = EntriesOf("/proc/self/fd");
     const auto threads = EntriesOf("/proc/self/task");
     const std::size_t heap = HeapInUse();
-    for (std::uint64_t life = 6; life <= 105; ++life)
+    constexpr std::uint64_t Cycles = 100;
+    for (std::uint64_t life = 6; life < 6 + Cycles; ++life)
     {
         cycle(life);
     }
-    EXPECT_TRUE(Until([&] { return EntriesOf("/proc/self/fd") <= files; }));
+    // ThreadSanitizer opens two pipes to its symbolizer for the first report, even for a suppressed one.
+    constexpr std::ptrdiff_t OpenedOnce = 2;
+    EXPECT_TRUE(Until([&] { return EntriesOf("/proc/self/fd") <= files + OpenedOnce; }));
     EXPECT_TRUE(Until([&] { return EntriesOf("/proc/self/task") <= threads; }));
     constexpr std::size_t PerCycle = 20 * 1024;
     std::size_t now = 0;
-    EXPECT_TRUE(Until([&] { return (now = HeapInUse()) < heap + 100 * PerCycle; }))
+    EXPECT_TRUE(Until([&] { return (now = HeapInUse()) < heap + Cycles * PerCycle; }))
         << "grew by " << now - heap;
     ::testing::Test::RecordProperty("heap_growth",
                                     std::to_string(static_cast<long>(now) - static_cast<long>(heap)));
