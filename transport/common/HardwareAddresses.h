@@ -57,6 +57,8 @@ public:
     // True if a datagram to this awaited host must also go to the host itself. True at once, and again after
     // AskAgain.
     bool HasToAsk(const Host &host, TimePoint now);
+    // False if the host is awaited and has not to be asked again: a datagram to it would only wait.
+    bool MayAsk(const Host &host, TimePoint now) { return !IsAwaited(host, now) || HasToAsk(host, now); }
 
 private:
     static std::string OfKernel();

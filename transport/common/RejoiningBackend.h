@@ -28,6 +28,8 @@ public:
                                                           SampleHandler handler) = 0;
     // The addresses of each Rabit session that it knows now. Any thread.
     virtual std::vector<PeerPlace> PeerPlaces() const = 0;
+    // The hosts whose programs are refused something for some time (Ledger.h), as problems of the network.
+    virtual std::vector<SettingsProblem> Refusals() const { return {}; }
 };
 
 class RejoiningBackend

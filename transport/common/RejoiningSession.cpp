@@ -137,8 +137,19 @@ std::unique_ptr<TransportReader> RejoiningSession::CreateReader(const TopicDescr
 
 std::vector<SettingsProblem> RejoiningSession::NetworkProblems() const
 {
-    const std::lock_guard lock(_mutex);
-    return _problems;
+    std::vector<SettingsProblem> problems;
+    {
+        const std::lock_guard lock(_mutex);
+        problems = _problems;
+    }
+    // While the session joins the network anew, there is none that refuses.
+    const std::unique_lock lock(_shared->Structure, std::try_to_lock);
+    if (lock.owns_lock() && _shared->Inner != nullptr)
+    {
+        const auto refusals = _shared->Inner->Refusals();
+        problems.insert(problems.end(), refusals.begin(), refusals.end());
+    }
+    return problems;
 }
 
 std::optional<milliseconds> RejoiningSession::Look()

@@ -1,14 +1,41 @@
 #include "common/VendorCore.h"
 
+#include <arpa/inet.h>
+
+#include <set>
 #include <utility>
 
+#include "common/PeerAddress.h"
 #include "common/RtpsReader.h"
 
 namespace Rabit
 {
 
+namespace
+{
+
+// `peers`: addresses (RejoiningBackend::Open).
+std::set<Rtps::HostAddress> HostsOf(const std::vector<std::string> &peers)
+{
+    std::set<Rtps::HostAddress> hosts;
+    for (const std::string &peer : peers)
+    {
+        Rtps::HostAddress host{};
+        if (inet_pton(AF_INET, ParsePeer(peer).Host.c_str(), host.data()) == 1)
+        {
+            hosts.insert(host);
+        }
+    }
+    return hosts;
+}
+
+}  // namespace
+
 VendorCore::VendorCore(const TransportSettings &settings, const SessionContext &context)
-    : _context(context), _security(settings.Security), _peerGate(context.Log, "peer events")
+    : _context(context),
+      _security(settings.Security),
+      _accounts(std::make_shared<Rtps::Ledger>(HostsOf(settings.Peers))),
+      _peerGate(context.Log, "peer events")
 {
 }
 
@@ -39,6 +66,21 @@ std::vector<PeerPlace> VendorCore::PeerPlaces() const
         places.push_back(place);
     }
     return places;
+}
+
+std::vector<SettingsProblem> VendorCore::Refusals() const
+{
+    std::vector<SettingsProblem> problems;
+    for (const Rtps::Ledger::Refused &refused : _accounts->LastingRefusals(std::chrono::steady_clock::now()))
+    {
+        problems.push_back(
+            {.Setting = "stranger",
+             .Entry = refused.Address(),
+             .Text = "programs there announce or request more than this node gives to strangers: "
+                     "refused " +
+                     std::to_string(refused.Times) + " times"});
+    }
+    return problems;
 }
 
 void VendorCore::Appeared(const Rtps::GuidPrefix &participant, const ParticipantIdentity &who,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/HandlerGate.h"
+#include "common/Ledger.h"
 #include "common/ParticipantIdentity.h"
 #include "common/PeerPlace.h"
 #include "common/PeerSessions.h"
@@ -44,6 +45,8 @@ public:
         const std::lock_guard lock(_mutex);
         _peers.VisitOf(node, visit);
     }
+    // The hosts whose programs are refused something for some time, as problems of the network.
+    std::vector<SettingsProblem> Refusals() const;
     // The addresses of the Rabit nodes that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _context.Log; }
@@ -65,6 +68,8 @@ protected:
     const std::optional<TransportSecurity> _security;
     // The guard notes them, before the vendor sees them.
     const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
+    // The guard keeps them. The session closes that of a participant which the vendor has lost.
+    const std::shared_ptr<Rtps::Ledger> _accounts;
 
 private:
     using Identity = std::shared_ptr<const PeerSession>;

@@ -37,16 +37,17 @@ struct Found
     Fnv1a Digest;
     Fnv1a DigestWithoutLease;
     std::vector<HostAddress> Hosts;
+    std::vector<Place> Places;
     SignedContent Signed;
     bool ListensToGroup = false;
     bool BestEffort = false;
     bool HasCard = false;
 
-    void AddHost(const std::optional<HostAddress> &host)
+    void AddHost(const HostAddress &host)
     {
-        if (host && std::find(Hosts.begin(), Hosts.end(), *host) == Hosts.end())
+        if (std::find(Hosts.begin(), Hosts.end(), host) == Hosts.end())
         {
-            Hosts.push_back(*host);
+            Hosts.push_back(host);
         }
     }
     void Digested(std::uint16_t id, std::span<const std::uint8_t> value)
@@ -157,18 +158,18 @@ bool IsLocator(RtpsReader value)
     return value.IsGood() && value.Left() == 16 && (isPort || (kind != UdpV4 && kind != UdpV6));
 }
 
-// The IPv4 host of a sound locator; empty for other kinds.
-std::optional<HostAddress> HostOf(RtpsReader locator)
+// The IPv4 address and the port of a sound locator; empty for other kinds.
+std::optional<Place> PlaceOf(RtpsReader locator)
 {
     if (locator.U32() != UdpV4)
     {
         return std::nullopt;
     }
-    locator.U32();  // port
+    Place place{.Host = {}, .Port = static_cast<std::uint16_t>(locator.U32())};
     const auto address = locator.Bytes(16);
-    HostAddress host{};
-    std::copy_n(address.end() - static_cast<std::ptrdiff_t>(host.size()), host.size(), host.begin());
-    return host;
+    std::copy_n(address.end() - static_cast<std::ptrdiff_t>(place.Host.size()), place.Host.size(),
+                place.Host.begin());
+    return place;
 }
 
 // True for the addresses at which a participant itself can be reached.
@@ -286,9 +287,13 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
             {
                 return false;
             }
-            if (IsUnicast(id))
+            if (const auto place = PlaceOf(value); place && (IsUnicast(id) || id == UnicastLocator))
             {
-                found.AddHost(HostOf(value));
+                found.Places.push_back(*place);
+                if (IsUnicast(id))
+                {
+                    found.AddHost(place->Host);
+                }
             }
             found.ListensToGroup = found.ListensToGroup || id == DefaultMulticastLocator;
             return true;
@@ -416,6 +421,7 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
                                           .Digest = (hasCard ? found.DigestWithoutLease : found.Digest).Sum(),
                                           .IsBestEffort = found.BestEffort,
                                           .Hosts = std::move(found.Hosts),
+                                          .Places = std::move(found.Places),
                                           .Signed = std::move(found.Signed),
                                           .ListensToGroup = found.ListensToGroup,
                                           .HasCard = hasCard})

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "common/Ledger.h"
 #include "guard/RtpsMessage.h"
 
 namespace Rabit::Rtps
@@ -32,6 +33,8 @@ struct Announcement
     bool IsBestEffort = false;
     // Participant: the addresses at which it says it can be reached.
     std::vector<HostAddress> Hosts{};
+    // Participant or endpoint: the same with their ports.
+    std::vector<Place> Places{};
     // Participant, if `secured`.
     SignedContent Signed{};
     // Participant: it listens to a multicast group for samples (PID_DEFAULT_MULTICAST_LOCATOR).

@@ -12,8 +12,6 @@ namespace
 {
 
 constexpr std::size_t MostPeers = 1024;
-constexpr std::size_t MostWriters = 4096;
-constexpr std::size_t MostReaders = 4096;
 // Longer than the announcement periods and leases in use.
 constexpr std::chrono::seconds Forgotten{60};
 // While there is room, peers are remembered for longer: a returning peer is heard at once.
@@ -56,16 +54,17 @@ bool KnownPeers::Announced(const GuidPrefix &peer, std::uint64_t digest, TimePoi
         {
             known.Period = std::clamp(std::max(since, known.Period / 2), ShortestPeriod, LongestPeriod);
         }
-        else
+        else if (!known.HasEnded)
         {
             const bool repeated = known.Place.IsRepeated(digest);
             if (now - known.Heard < Forgotten && (!repeated || since < 2 * known.Period))
             {
                 return false;
             }
-            known.Place = Claim(digest);
             known.NextIsNews = true;
         }
+        known.Place = Claim(digest);
+        known.HasEnded = false;
         known.Placed = now;
         known.Heard = now;
         for (const EntityId writer : BuiltinWriters)
@@ -201,51 +200,56 @@ bool KnownPeers::Hears(const GuidPrefix &peer, TimePoint now)
 bool KnownPeers::EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest,
                                    bool isBestEffort)
 {
+    Peer &known = _peers.at(peer);
     if (!IsWriter(endpoint))
     {
-        return ReaderAnnounced(_peers.at(peer), endpoint, digest);
+        return known.Readers.try_emplace(endpoint, digest).first->second.Accepts(digest);
     }
-    auto &writers = _peers.at(peer).Writers;
-    const auto known = writers.find(endpoint);
-    if (known != writers.end())
+    const auto [at, isNew] = known.Writers.try_emplace(endpoint);
+    Numbers &writer = at->second;
+    if (isNew)
     {
-        const bool agrees = known->second.Endpoint.Accepts(digest);
-        if (agrees)
-        {
-            known->second.IsBestEffort = isBestEffort;
-            known->second.Absent.Announced();
-        }
-        return agrees;
+        writer.Endpoint = Claim(digest);
+        writer.IsBestEffort = isBestEffort;
+        return true;
     }
-    if (writers.size() >= MostWriters)
+    const bool agrees = writer.Endpoint.Accepts(digest);
+    if (agrees)
     {
-        const auto silentLonger = [](const auto &a, const auto &b)
-        {
-            // Builtin writers remain.
-            return std::pair(IsBuiltin(a.first), a.second.Said) <
-                   std::pair(IsBuiltin(b.first), b.second.Said);
-        };
-        writers.erase(std::min_element(writers.begin(), writers.end(), silentLonger));
+        writer.IsBestEffort = isBestEffort;
+        writer.Absent.Announced();
     }
-    Numbers &added = writers[endpoint];
-    added.Endpoint = Claim(digest);
-    added.IsBestEffort = isBestEffort;
-    return true;
+    return agrees;
 }
 
-bool KnownPeers::ReaderAnnounced(Peer &peer, EntityId reader, std::uint64_t digest)
+void KnownPeers::EndpointGone(const GuidPrefix &peer, EntityId endpoint)
 {
-    auto &readers = peer.Readers;
-    if (readers.size() >= MostReaders && readers.count(reader) == 0)
+    const auto found = _peers.find(peer);
+    if (found != _peers.end() && !IsBuiltin(endpoint))
     {
-        readers.erase(std::min_element(readers.begin(), readers.end(),
-                                       [](const auto &a, const auto &b)
-                                       { return a.second.Turn < b.second.Turn; }));
+        found->second.Writers.erase(endpoint);
+        found->second.Readers.erase(endpoint);
     }
-    Reader &announced = readers.try_emplace(reader, Reader{Claim(digest)}).first->second;
-    const bool agrees = announced.Endpoint.Accepts(digest);
-    announced.Turn = agrees ? ++peer.Turn : announced.Turn;
-    return agrees;
+}
+
+void KnownPeers::EndpointsGone(const GuidPrefix &peer)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end())
+    {
+        std::erase_if(found->second.Writers, [](const auto &entry) { return !IsBuiltin(entry.first); });
+        found->second.Readers.clear();
+    }
+}
+
+void KnownPeers::Ended(const GuidPrefix &peer)
+{
+    EndpointsGone(peer);
+    const auto found = _peers.find(peer);
+    if (found != _peers.end())
+    {
+        found->second.HasEnded = true;
+    }
 }
 
 bool KnownPeers::HasWriter(const GuidPrefix &peer, EntityId writer) const

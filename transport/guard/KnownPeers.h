@@ -20,8 +20,8 @@ namespace Rabit::Rtps
 // A writer's numbers rise in steps. If a number jumped, the vendor would ignore all samples below it. So a
 // jump is believed only if the writer's rate explains it, or the time for which it was not heard, or if
 // several numbers in a row agree on it. Bounded: a full table of peers takes no new one until one in it was
-// silent for a minute. A table that has doubled forgets all peers that were silent for five minutes. A full
-// table of writers or readers forgets one. Not thread-safe.
+// silent for a minute. A table that has doubled forgets all peers that were silent for five minutes.
+// Not thread-safe.
 class KnownPeers
 {
 public:
@@ -59,11 +59,15 @@ public:
 
     // The peer, which must be known, announced a writer or a reader; `digest` is the hash of the
     // announcement. Returns false if it contradicts the known one. An endpoint that changes its QoS repeats
-    // the announcement until it is received: the third identical one in a row is believed. If there are too
-    // many writers, the one that was silent for longest is forgotten; if there are too many readers, the one
-    // whose announcement was accepted longest ago.
+    // the announcement until it is received: the third identical one in a row is believed. Ledger.h limits
+    // their number.
     bool EndpointAnnounced(const GuidPrefix &peer, EntityId endpoint, std::uint64_t digest,
                            bool isBestEffort = false);
+    void EndpointGone(const GuidPrefix &peer, EntityId endpoint);
+    // The peer said goodbye: all its endpoints are gone.
+    void EndpointsGone(const GuidPrefix &peer);
+    // The vendor was told that the peer left. Its next announcement is believed, whatever it says.
+    void Ended(const GuidPrefix &peer);
     bool HasWriter(const GuidPrefix &peer, EntityId writer) const;
 
     // True if an announced writer can have reached this number, which is then noted. The first number of a
@@ -108,14 +112,10 @@ private:
         SampleNumbers Samples;
         AbsentNumbers Absent;
     };
-    struct Reader
-    {
-        Claim<std::uint64_t> Endpoint;
-        std::uint64_t Turn = 0;  // of its last accepted announcement; rises with each of this peer
-    };
     struct Peer
     {
         Claim<std::uint64_t> Place;
+        bool HasEnded = false;  // and was not announced since
         PeerVoice Speaks;
         bool ListensToGroup = false;
         TimePoint Placed{};                  // when its addresses were last announced
@@ -125,10 +125,8 @@ private:
         std::int64_t Theirs = 0;  // the highest number of its announcements
         std::int64_t Ours = 0;
         std::map<EntityId, Numbers> Writers;
-        std::map<EntityId, Reader> Readers;
-        std::uint64_t Turn = 0;  // of its readers' announcements
+        std::map<EntityId, Claim<std::uint64_t>> Readers;
     };
-    static bool ReaderAnnounced(Peer &peer, EntityId reader, std::uint64_t digest);
 
     bool MakeRoom(TimePoint now);
     void ForgetSilent(TimePoint now);

@@ -44,6 +44,23 @@ bool EndsItsOwn(const Delivery &delivery, const GuidPrefix &sender)
            (!delivery.HasKeyPayload || CheckKey(delivery.Writer, sender, delivery.Payload));
 }
 
+EntityId EndedBy(const Delivery &delivery)
+{
+    EntityId subject = delivery.KeyHash.empty() ? 0 : EntityOf(delivery.KeyHash);
+    if (subject == 0 && delivery.HasKeyPayload)
+    {
+        VisitParameters(delivery.Payload,
+                        [&subject](const ListParameter &parameter)
+                        {
+                            if (parameter.Id == Parameters::EndpointGuid && parameter.Value.size() == 16)
+                            {
+                                subject = EntityOf(parameter.Value);
+                            }
+                        });
+    }
+    return subject;
+}
+
 bool IsSoundUnchanged(const Submessage &submessage, Delivery delivery, const GuidPrefix &sender)
 {
     if (submessage.Kind != SubmessageKind::Data)

@@ -12,6 +12,8 @@ bool IsOfTypes(EntityId writer);
 // Submessages that nodes with keys accept unprotected.
 bool IsHeardInPlain(const Submessage &submessage, const Delivery &delivery);
 // True if a sample that ends something ends the sender itself, or an endpoint of its own.
+// The endpoint or participant that a sound sample ends by a key alone; 0: none.
+EntityId EndedBy(const Delivery &delivery);
 bool EndsItsOwn(const Delivery &delivery, const GuidPrefix &sender);
 // True if a submessage of a builtin writer is sound and of its sender, and no byte of it need be blanked.
 bool IsSoundUnchanged(const Submessage &submessage, Delivery delivery, const GuidPrefix &sender);

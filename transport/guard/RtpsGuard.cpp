@@ -110,6 +110,10 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
                 return {};
         }
     }
+    if (IsCounted(passage) && passage.Whence == Origin::Network)
+    {
+        _ledger->Came(passage.Sender, passage.Datagram.size());
+    }
     if (!passage.Useful)
     {
         return {};
@@ -236,6 +240,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     {
         verdict = CutAbsent(submessage, delivery, passage);
     }
+    if (verdict == Verdict::Pass && passage.Whence == Origin::Network && IsCounted(passage))
+    {
+        NoteVoice(submessage, delivery, passage);
+    }
     passage.Useful = passage.Useful || verdict == Verdict::Pass;
     return verdict;
 }
@@ -276,10 +284,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     }
     if (isKeyAlone)
     {
-        if (delivery.Writer == ParticipantWriter)
-        {
-            NoteGoodbye(passage);
-        }
+        NoteEnd(delivery, EndedBy(delivery), passage);
         return Verdict::Pass;
     }
     const auto announcement = CheckDiscovery(delivery.Writer, passage.Sender, delivery.Payload, IsSecured(),
@@ -288,27 +293,69 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     {
         return Verdict::Drop;
     }
+    if (!delivery.Alive)
+    {
+        NoteEnd(delivery, announcement->Subject, passage);
+        return Verdict::Pass;
+    }
     if (delivery.Writer == ParticipantWriter)
     {
-        if (delivery.Alive)
-        {
-            return JudgeParticipant(*announcement, delivery.First, passage);
-        }
-        NoteGoodbye(passage);
+        return JudgeParticipant(*announcement, delivery.First, passage);
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
-    if (_mode == Mode::Full && delivery.Alive && isEndpoint && _peers.Hears(passage.Sender, passage.Now) &&
-        !_peers.EndpointAnnounced(passage.Sender, announcement->Subject, announcement->Digest,
-                                  announcement->IsBestEffort))
+    return _mode == Mode::Full && isEndpoint && _peers.Hears(passage.Sender, passage.Now)
+               ? JudgeEndpoint(*announcement, passage)
+               : Verdict::Pass;
+}
+
+RtpsGuard::Verdict RtpsGuard::JudgeEndpoint(const Announcement &announcement, const Passage &passage)
+{
+    if ((IsCounted(passage) &&
+         !_ledger->HasEndpoint(passage.Sender, announcement.Subject, announcement.Places, passage.Now)) ||
+        !_peers.EndpointAnnounced(passage.Sender, announcement.Subject, announcement.Digest,
+                                  announcement.IsBestEffort))
     {
         return Verdict::Refuse;
     }
     return Verdict::Pass;
 }
 
+// A sound submessage of a participant has passed.
+void RtpsGuard::NoteVoice(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
+{
+    if (!IsBuiltin(delivery.Writer))
+    {
+        if (_peers.SpeaksFrom(passage.Sender, passage.From) && _ledger->Spoke(passage.Sender) &&
+            _observer != nullptr)
+        {
+            _observer->Spoke(passage.Sender);
+        }
+    }
+    else if (submessage.Kind == SubmessageKind::AckNack && delivery.First > 1 &&
+             (delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter))
+    {
+        _ledger->Listens(passage.Sender);
+    }
+}
+
+void RtpsGuard::NoteEnd(const Delivery &delivery, EntityId subject, const Passage &passage)
+{
+    if (delivery.Writer == ParticipantWriter)
+    {
+        NoteGoodbye(passage);
+    }
+    else if (_mode == Mode::Full && delivery.Writer != LivelinessWriter)
+    {
+        _peers.EndpointGone(passage.Sender, subject);
+        _ledger->EndpointGone(passage.Sender, subject);
+    }
+}
+
 void RtpsGuard::NoteGoodbye(const Passage &passage)
 {
     _replies.OnGone(passage.Sender);
+    _ledger->Left(passage.Sender);
+    passage.Whence == Origin::Card ? _peers.Ended(passage.Sender) : _peers.EndpointsGone(passage.Sender);
     if (passage.Whence != Origin::Network)
     {
         return;
@@ -338,12 +385,22 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
     const bool isFromNetwork = passage.Whence == Origin::Network && passage.Sender != _own;
     if (_observer != nullptr && isFromNetwork)
     {
-        _observer->Announced(passage.Sender, announcement.HasCard);
         if (announcement.HasCard)
         {
+            _observer->Announced(passage.Sender, true);
             _peers.Hears(passage.Sender, passage.Now);
             return Verdict::Ignore;
         }
+        if (_observer->IsReplayed(passage.Sender))
+        {
+            return Verdict::Refuse;  // a participant does not lose its card
+        }
+    }
+    const bool isNew = IsCounted(passage) && !_ledger->Has(passage.Sender);
+    if (isNew && !_ledger->Comes(passage.Sender, passage.From,
+                                 passage.Whence == Origin::Card ? passage.Datagram.size() : 0, passage.Now))
+    {
+        return Verdict::Refuse;
     }
     // In the other modes participants are only counted: addresses come another way, or are proven later.
     if (!_peers.Announced(passage.Sender, _mode == Mode::Full ? announcement.Digest : 0, passage.Now) ||
@@ -352,8 +409,13 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
              passage.Sender,
              {.Digest = announcement.Digest, .Signed = announcement.Signed, .Number = number})))
     {
+        if (isNew)
+        {
+            _ledger->Left(passage.Sender);
+        }
         return Verdict::Refuse;
     }
+    _ledger->SetPlaces(passage.Sender, announcement.Places);
     // With keys the handshake confirms these addresses.
     _peers.IsAt(passage.Sender, announcement.Hosts, passage.From);
     if (_mode == Mode::Full)
@@ -362,6 +424,10 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
     }
     if (isFromNetwork)
     {
+        if (_observer != nullptr)
+        {
+            _observer->Announced(passage.Sender, false);
+        }
         ++_announcementsHeard;
         if (_replies.OnAnnouncement(passage.Sender, passage.Now))
         {
@@ -378,8 +444,10 @@ bool RtpsGuard::IsReplayed(const Delivery &delivery, const Passage &passage) con
            _observer->IsReplayed(passage.Sender);
 }
 
-bool RtpsGuard::IsKnownAt(const GuidPrefix &peer, const HostAddress &from)
+bool RtpsGuard::IsKnownAt(std::span<const std::uint8_t> cardMessage, const HostAddress &from)
 {
+    const GuidPrefix peer = SenderOf(cardMessage);
+    _ledger->Came(peer, cardMessage.size());
     const std::lock_guard lock(_mutex);
     return _peers.LastHeard(peer).has_value() && _peers.SpeaksFrom(peer, from);
 }

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/Ledger.h"
 #include "common/RecentGoodbyes.h"
 #include "guard/AnnouncementReplies.h"
 #include "guard/AuthenticationThread.h"
@@ -63,10 +64,16 @@ public:
     };
 
     // `period`: announcement period of all participants. `goodbyes`: where to note those of known
-    // participants; a session behind the guard shares them.
+    // participants. `ledger`: where to keep the accounts of participants, in Mode::Full. A session behind the
+    // guard shares both.
     RtpsGuard(Mode mode, std::chrono::milliseconds period, Vendor vendor = Vendor::FastDds,
-              std::shared_ptr<RecentGoodbyes> goodbyes = std::make_shared<RecentGoodbyes>())
-        : _mode(mode), _vendor(vendor), _goodbyes(std::move(goodbyes)), _replies(period)
+              std::shared_ptr<RecentGoodbyes> goodbyes = std::make_shared<RecentGoodbyes>(),
+              std::shared_ptr<Ledger> ledger = std::make_shared<Ledger>())
+        : _mode(mode),
+          _vendor(vendor),
+          _goodbyes(std::move(goodbyes)),
+          _ledger(std::move(ledger)),
+          _replies(period)
     {
     }
 
@@ -77,8 +84,8 @@ public:
     // Sets what is told of announcements and handshakes, and decides with which of them the vendor begins an
     // authentication. For Mode::Protected; as for SetObserver.
     void SetAuthentication(AuthenticationThread &authentication) { _authentication = &authentication; }
-    // True if a participant whose announcement was admitted has announced that address.
-    bool IsKnownAt(const GuidPrefix &peer, const HostAddress &from);
+    // Takes note of a card message. True if its sender's announcement was admitted and names that address.
+    bool IsKnownAt(std::span<const std::uint8_t> cardMessage, const HostAddress &from);
     // When a participant was last heard; empty: its announcement has not been admitted.
     std::optional<TimePoint> LastHeard(const GuidPrefix &peer);
     // True if a participant at that address was heard since then, and all that were listen to the group.
@@ -100,6 +107,11 @@ public:
 
     // Records a datagram that we send.
     void Sending(std::span<const std::uint8_t> datagram);
+    // Whether a datagram may go to that address, which is not a group's (Ledger::MayGo).
+    Ledger::Going MayGo(const Place &to, std::size_t bytes, TimePoint now)
+    {
+        return _mode == Mode::Full ? _ledger->MayGo(to, bytes, now) : Ledger::Going::Freely;
+    }
 
     // True, once, if a peer of whom a datagram was admitted waits for our announcement.
     bool TakeReplyDue() { return _replyDue.exchange(false); }
@@ -143,6 +155,11 @@ private:
     bool IsForOthers(const Passage &passage) const;
     // True if the observer handles this instead of the network.
     bool IsReplayed(const Delivery &delivery, const Passage &passage) const;
+    // True if the ledger counts what comes from the sender.
+    bool IsCounted(const Passage &passage) const { return _mode == Mode::Full && passage.Sender != _own; }
+    void NoteVoice(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
+    Verdict JudgeEndpoint(const Announcement &announcement, const Passage &passage);
+    void NoteEnd(const Delivery &delivery, EntityId subject, const Passage &passage);
     void NoteGoodbye(const Passage &passage);
     Verdict JudgeParticipant(const Announcement &announcement, std::int64_t number, const Passage &passage);
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
@@ -161,6 +178,7 @@ private:
     const Mode _mode;
     const Vendor _vendor;
     const std::shared_ptr<RecentGoodbyes> _goodbyes;
+    const std::shared_ptr<Ledger> _ledger;
     PeerObserver *_observer = nullptr;
     AuthenticationThread *_authentication = nullptr;
     std::mutex _mutex;              // several sockets receive at once

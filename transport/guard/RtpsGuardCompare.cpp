@@ -48,7 +48,8 @@ void WriteSampleNumber(const Submessage &submessage, std::int64_t number)
 bool RtpsGuard::IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
 {
     const bool announces = delivery.Writer == ParticipantWriter && delivery.Alive;  // it tells addresses
-    return announces || submessage.Kind == SubmessageKind::DataFrag ||  // it is checked when whole
+    return announces || passage.Whence == Origin::Card ||  // it was taken or refused as a whole
+           submessage.Kind == SubmessageKind::DataFrag ||  // it is checked when whole
            _peers.SpeaksFrom(passage.Sender, passage.From) ||
            _peers.Believes(passage.Sender, passage.From, SayingOf(submessage.Kind, delivery));
 }

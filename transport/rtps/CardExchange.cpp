@@ -52,8 +52,49 @@ bool CardExchange::MakeRoom()
     {
         return false;
     }
+    DropParts(oldest->second);
     _peers.erase(oldest);
     return true;
+}
+
+void CardExchange::Forget(const GuidPrefix &peer)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end())
+    {
+        DropParts(found->second);
+        _peers.erase(found);
+    }
+}
+
+bool CardExchange::IsNews(const Peer &peer, const CardMessage &message, TimePoint now)
+{
+    const bool isOther = message.Summary.Size > 0 && message.Summary != peer.Wanted;
+    const bool isLater = static_cast<std::int32_t>(message.SentAt - peer.WantedAt) >= 0;
+    const bool isLacking = peer.Wanted != peer.Held && now - peer.WantedSince >= Believed;
+    return isOther && (peer.Wanted.Size == 0 || isLater || isLacking);
+}
+
+void CardExchange::DropParts(Peer &peer)
+{
+    _incomplete -= std::exchange(peer.PartBytes, 0);
+    peer.Parts.clear();
+}
+
+void CardExchange::KeepPart(Peer &peer, const CardMessage &message)
+{
+    std::vector<std::uint8_t> &part = peer.Parts[message.Part];
+    const std::size_t more = message.Bytes.size() - std::min(part.size(), message.Bytes.size());
+    part.assign(message.Bytes.begin(), message.Bytes.end());
+    peer.PartBytes += more;
+    _incomplete += more;
+    if (_incomplete > MostIncomplete)
+    {
+        DropParts(std::max_element(_peers.begin(), _peers.end(),
+                                   [](const auto &a, const auto &b)
+                                   { return a.second.PartBytes < b.second.PartBytes; })
+                      ->second);
+    }
 }
 
 // A peer that was heard is in reach: its request starts again with the shortest interval, unless the channel
@@ -156,15 +197,21 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
     {
         Take(request, message, now);
     }
-    if (message.Summary.Size > 0 && message.Summary != peer->Wanted)
+    if (IsNews(*peer, message, now))
     {
         peer->Wanted = message.Summary;
-        peer->Parts.clear();
+        peer->WantedSince = now;
+        peer->WantedAt = message.SentAt;
+        DropParts(*peer);
         peer->Request.Stop();
+    }
+    if (message.Summary == peer->Wanted && static_cast<std::int32_t>(message.SentAt - peer->WantedAt) > 0)
+    {
+        peer->WantedAt = message.SentAt;
     }
     if (message.HasPart && message.Summary == peer->Wanted && peer->Wanted != peer->Held)
     {
-        peer->Parts[message.Part].assign(message.Bytes.begin(), message.Bytes.end());
+        KeepPart(*peer, message);
         peer->Asked = 0;
     }
     if (LackingOf(*peer) != 0)
@@ -181,10 +228,11 @@ std::optional<CardExchange::Card> CardExchange::Received(const CardMessage &mess
         return std::nullopt;
     }
     Card card{.Of = message.From, .Packed = {}};
-    for (const auto &[number, bytes] : std::exchange(peer->Parts, {}))
+    for (const auto &[number, bytes] : peer->Parts)
     {
         card.Packed.insert(card.Packed.end(), bytes.begin(), bytes.end());
     }
+    DropParts(*peer);
     if (SummaryOf(card.Packed) != peer->Wanted)
     {
         Refuse(message.From, now);
@@ -229,7 +277,7 @@ void CardExchange::Refuse(const GuidPrefix &peer, TimePoint now)
     if (found != _peers.end())
     {
         found->second.Held = {};
-        found->second.Parts.clear();
+        DropParts(found->second);
         Ask(found->second, now + FirstRetry, now);
     }
 }

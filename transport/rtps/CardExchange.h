@@ -61,6 +61,9 @@ public:
     static constexpr std::chrono::seconds ShortRest{1};
     // Most participants without a known card that are asked within a Rest: a forger can invent any number.
     static constexpr std::size_t MostUnknown = 16;
+    // A message with an older summary than the wanted one is a repeat of somebody else. It is believed if the
+    // wanted card has not come for this time.
+    static constexpr std::chrono::seconds Believed{2};
     // From a card's summary to the first request: its parts may be on their way.
     static constexpr std::chrono::milliseconds Patience{30};
     static constexpr std::chrono::milliseconds FirstSummary{100};
@@ -75,6 +78,8 @@ public:
     // After this time without a request the interval is short again.
     static constexpr std::chrono::seconds Quiet{5};
     static constexpr std::size_t MostPeers = 1024;
+    // Bytes of all cards that are not complete. If there are more, the largest one begins again.
+    static constexpr std::size_t MostIncomplete = 1024 * 1024;
     // Bytes per second, with the headers of IP and UDP, and the largest burst in bytes.
     static constexpr double Rate = 20000.0;
     static constexpr double Burst = 6000.0;
@@ -107,7 +112,7 @@ public:
     std::optional<Card> Received(const CardMessage &message, TimePoint now);
     // The card was not a valid one: it is requested again.
     void Refuse(const GuidPrefix &peer, TimePoint now);
-    void Forget(const GuidPrefix &peer) { _peers.erase(peer); }
+    void Forget(const GuidPrefix &peer);
 
     std::optional<TimePoint> Due() const;
     struct Outgoing
@@ -128,8 +133,11 @@ private:
     struct Peer
     {
         CardSummary Wanted;                                      // the card that the peer says it has
+        std::uint32_t WantedAt = 0;                              // when it said so, by its clock
+        TimePoint WantedSince{};                                 // by ours
         CardSummary Held;                                        // the card that is complete here
         std::map<std::size_t, std::vector<std::uint8_t>> Parts;  // of the wanted card
+        std::size_t PartBytes = 0;
         BackoffTimer<TimePoint> Request{{FirstRetry, LongestRetry, GapFactor}};
         bool IsAnnounced = false;  // it has said that it has a card
         bool HasCard = false;      // a message of it has come
@@ -155,6 +163,9 @@ private:
 
     Peer *Find(const GuidPrefix &peer, TimePoint now);
     bool MakeRoom();
+    static bool IsNews(const Peer &peer, const CardMessage &message, TimePoint now);
+    void KeepPart(Peer &peer, const CardMessage &message);
+    void DropParts(Peer &peer);
     bool MayAskUnknown(TimePoint now);
     void Ask(Peer &peer, TimePoint due, TimePoint now);
     bool Rests(const Peer &peer, TimePoint now) const;
@@ -186,6 +197,7 @@ private:
     BackoffTimer<TimePoint> _greeting{{FirstSummary, LongestSummary, SummaryFactor, GreetingSummaries}};
     std::optional<TimePoint> _nextPeriod;
     std::map<GuidPrefix, Peer> _peers;
+    std::size_t _incomplete = 0;     // bytes of parts
     std::deque<TimePoint> _unknown;  // when participants that may have no card were asked first
     double _left = Burst;
     TimePoint _filledAt{};

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 
 #include "common/RtpsReader.h"
@@ -83,25 +84,58 @@ bool CardReplay::Put(const GuidPrefix &peer, std::span<const std::uint8_t> card,
     known.Name = NameIn(payload);
     known.Header.assign(card.begin(), card.begin() + RtpsHeaderSize);
     known.Participant = std::move(participant);
+    std::map<EntityId, std::set<EntityId>> present;
+    for (const auto &[writer, whole] : endpoints)
+    {
+        present[writer].insert(SubjectOf(whole));
+    }
     for (const EntityId writer : EndpointWriters)
     {
-        known.Streams[writer];
+        RemoveMissing(known.Streams[writer], writer, peer, present[writer]);
     }
     for (const auto &[writer, whole] : endpoints)
     {
         Stream &stream = known.Streams[writer];
         Announcement &endpoint = stream.Endpoints[SubjectOf(whole)];
         const std::uint64_t content = ContentOf(whole);
-        if (endpoint.Number == 0 || endpoint.Content != content)
+        if (endpoint.Number == 0 || endpoint.IsGone || endpoint.Content != content)
         {
-            endpoint = {.Number = ++stream.Last, .Content = content, .Bytes = {whole.begin(), whole.end()}};
+            endpoint = {.Number = ++stream.Last,
+                        .Content = content,
+                        .IsGone = false,
+                        .Bytes = {whole.begin(), whole.end()}};
         }
     }
     known.Retry.Begin(now);
     return true;
 }
 
+// An implementation that acknowledges nothing knows none of them.
+void CardReplay::RemoveMissing(Stream &stream, EntityId writer, const GuidPrefix &peer,
+                               const std::set<EntityId> &present)
+{
+    for (auto &[subject, endpoint] : stream.Endpoints)
+    {
+        if (!endpoint.IsGone && !present.contains(subject))
+        {
+            endpoint = {.Number = ++stream.Last, .Content = 0, .IsGone = true, .Bytes = {}};
+            AppendEnd(endpoint.Bytes, writer, peer, subject, endpoint.Number);
+        }
+    }
+    for (auto at = stream.Endpoints.begin();
+         stream.Endpoints.size() > 2 * OwnCard::MostEndpoints && at != stream.Endpoints.end();)
+    {
+        at = at->second.IsGone ? stream.Endpoints.erase(at) : std::next(at);
+    }
+}
+
 void CardReplay::End(const GuidPrefix &peer)
+{
+    EndFirst(peer);
+    _peers.erase(peer);
+}
+
+void CardReplay::EndFirst(const GuidPrefix &peer)
 {
     const auto found = _peers.find(peer);
     if (found == _peers.end())
@@ -109,9 +143,8 @@ void CardReplay::End(const GuidPrefix &peer)
         return;
     }
     Message end{.From = peer, .Bytes = found->second.Header};
-    AppendEndOfParticipant(end.Bytes, peer, found->second.Announced + 1);
+    AppendEnd(end.Bytes, ParticipantWriter, peer, ParticipantEntity, ++found->second.Announced);
     _ends.push_back(std::move(end));
-    _peers.erase(found);
 }
 
 std::string CardReplay::NameOf(const GuidPrefix &peer) const
@@ -128,6 +161,32 @@ std::vector<GuidPrefix> CardReplay::Peers() const
         peers.push_back(name);
     }
     return peers;
+}
+
+std::size_t CardReplay::BytesOf(const GuidPrefix &peer) const
+{
+    const auto found = _peers.find(peer);
+    std::size_t bytes = 0;
+    if (found != _peers.end())
+    {
+        for (const auto &[writer, stream] : found->second.Streams)
+        {
+            for (const auto &[subject, endpoint] : stream.Endpoints)
+            {
+                bytes += endpoint.Bytes.size();
+            }
+        }
+    }
+    return bytes;
+}
+
+void CardReplay::GoOn(const GuidPrefix &peer, TimePoint now)
+{
+    const auto found = _peers.find(peer);
+    if (found != _peers.end() && !found->second.Retry.Due() && !IsSettled(found->second))
+    {
+        found->second.Retry.Begin(now);
+    }
 }
 
 bool CardReplay::IsSettled(const Peer &peer)
@@ -179,6 +238,8 @@ void CardReplay::Said(const EndpointSubmessage &said, TimePoint now)
             peer.IsKnown = true;
             stream.IsConfirmed = true;
             stream.Acknowledged = std::max<std::int64_t>(said.Said.First, 1);
+            std::erase_if(stream.Endpoints, [&stream](const auto &entry)
+                          { return entry.second.IsGone && entry.second.Number < stream.Acknowledged; });
             if (stream.Acknowledged <= stream.Last || !said.IsFinal)
             {
                 Answer(peer, now);

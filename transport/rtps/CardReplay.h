@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,21 +46,28 @@ public:
 
     void SetSelf(const GuidPrefix &self) { _self = self; }
 
-    // Sets the unpacked card of a peer. Returns false, and changes nothing, if it is no card of that peer.
+    // Sets the unpacked card of a peer, in place of the former one: endpoints that it does not have are gone.
+    // Returns false, and changes nothing, if it is no card of that peer.
     bool Put(const GuidPrefix &peer, std::span<const std::uint8_t> card, TimePoint now);
     bool Has(const GuidPrefix &peer) const { return _peers.contains(peer); }
     // The implementation has lost the peer, or was told that it left.
     void Forget(const GuidPrefix &peer) { _peers.erase(peer); }
     // Tells the implementation that the peer left, and forgets it.
     void End(const GuidPrefix &peer);
+    // Tells the implementation that the peer left before it is told its card: it knows another announcement.
+    void EndFirst(const GuidPrefix &peer);
     // The name that the peer's announcement gives it; empty: none.
     std::string NameOf(const GuidPrefix &peer) const;
     std::vector<GuidPrefix> Peers() const;
     std::size_t Size() const { return _peers.size(); }
+    // Bytes kept of the peer's card.
+    std::size_t BytesOf(const GuidPrefix &peer) const;
 
     // Repeats everything of that peer, after a message to the implementation was lost. Does nothing while a
     // replay is in progress.
     void Again(const GuidPrefix &peer, TimePoint now);
+    // Goes on with a replay that has ended before the implementation had acknowledged all.
+    void GoOn(const GuidPrefix &peer, TimePoint now);
 
     // The implementation sent something to that peer, or to all: a heartbeat, or an acknowledgement.
     void Said(const EndpointSubmessage &said, TimePoint now);
@@ -79,6 +87,7 @@ private:
     {
         std::int64_t Number = 0;
         std::uint64_t Content = 0;
+        bool IsGone = false;  // forgotten when it is acknowledged
         std::vector<std::uint8_t> Bytes;
     };
     // The announcements of one of the peer's endpoint writers, and the state of their delivery.
@@ -103,6 +112,8 @@ private:
         TimePoint Answered{};
     };
 
+    static void RemoveMissing(Stream &stream, EntityId writer, const GuidPrefix &peer,
+                              const std::set<EntityId> &present);
     static bool IsSettled(const Peer &peer);
     void Answer(Peer &peer, TimePoint now);
     void Say(const GuidPrefix &name, Peer &peer, bool all, const OwnCard &own,

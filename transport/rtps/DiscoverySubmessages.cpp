@@ -214,8 +214,8 @@ void AppendAcknowledgement(std::vector<std::uint8_t> &message, EntityId writer, 
     Append(message, count, 4);
 }
 
-void AppendEndOfParticipant(std::vector<std::uint8_t> &message, const GuidPrefix &participant,
-                            std::int64_t number)
+void AppendEnd(std::vector<std::uint8_t> &message, EntityId writer, const GuidPrefix &participant,
+               EntityId entity, std::int64_t number)
 {
     // Octets to the inline QoS, entities, number; key hash, status, end of the list; the key.
     constexpr std::uint8_t disposedAndUnregistered = 0x03;
@@ -225,16 +225,17 @@ void AppendEndOfParticipant(std::vector<std::uint8_t> &message, const GuidPrefix
     AppendSubmessageHeader(message, SubmessageKind::Data, 20 + inlineSize + keySize, InlineQosFlag | KeyFlag);
     Append(message, 0, 2);
     Append(message, 16, 2);
-    AppendEntities(message, ParticipantWriter);
+    AppendEntities(message, writer);
     AppendSequence(message, number);
     std::vector<std::uint8_t> guid(participant.begin(), participant.end());
-    AppendEntity(guid, ParticipantEntity);
+    AppendEntity(guid, entity);
     AppendParameter(message, Parameters::KeyHash, guid);
     AppendParameter(message, Parameters::StatusInfo,
                     std::to_array<std::uint8_t>({0, 0, 0, disposedAndUnregistered}));
     AppendParameter(message, Parameters::Sentinel, {});
     message.insert(message.end(), {0, 3, 0, 0});
-    AppendParameter(message, Parameters::ParticipantGuid, guid);
+    AppendParameter(
+        message, writer == ParticipantWriter ? Parameters::ParticipantGuid : Parameters::EndpointGuid, guid);
     AppendParameter(message, Parameters::Sentinel, {});
 }
 
@@ -254,7 +255,8 @@ std::vector<std::uint8_t> GoodbyeAfter(std::span<const std::uint8_t> announcemen
                          const auto header = announcement.first(RtpsHeaderSize);
                          message.assign(header.begin(), header.end());
                          AppendDestination(message, to);
-                         AppendEndOfParticipant(message, SenderOf(announcement), number + 1);
+                         AppendEnd(message, ParticipantWriter, SenderOf(announcement), ParticipantEntity,
+                                   number + 1);
                      });
     return message;
 }
@@ -266,7 +268,7 @@ std::vector<std::uint8_t> GoodbyeOf(const GuidPrefix &peer, std::span<const std:
     std::vector<std::uint8_t> goodbye(header.begin(), header.end());
     goodbye.resize(RtpsHeaderSize);
     std::copy(peer.begin(), peer.end(), goodbye.begin() + PrefixAt);
-    AppendEndOfParticipant(goodbye, peer, number);
+    AppendEnd(goodbye, ParticipantWriter, peer, ParticipantEntity, number);
     return goodbye;
 }
 

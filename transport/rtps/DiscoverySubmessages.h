@@ -60,8 +60,9 @@ std::vector<std::uint8_t> GoodbyeAfter(std::span<const std::uint8_t> announcemen
 // The goodbye of another participant, with the header of any message.
 std::vector<std::uint8_t> GoodbyeOf(const GuidPrefix &peer, std::span<const std::uint8_t> message,
                                     std::int64_t number);
-// Appends the goodbye of the participant whose header the message has.
-void AppendEndOfParticipant(std::vector<std::uint8_t> &message, const GuidPrefix &participant,
-                            std::int64_t number);
+// Appends that an entity of the participant whose header the message has is gone: the participant itself,
+// with ParticipantWriter and ParticipantEntity, or an endpoint, with the writer that announces it.
+void AppendEnd(std::vector<std::uint8_t> &message, EntityId writer, const GuidPrefix &participant,
+               EntityId entity, std::int64_t number);
 
 }  // namespace Rabit::Rtps

@@ -88,24 +88,74 @@ bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress
     {
         return true;
     }
-    if (!isKnownAt && !IsThere(message->From, from))
+    // Before its card is there, nothing tells where a participant is. The card does, whoever sends it.
+    if (!isKnownAt && _replay.Has(message->From) && !IsThere(message->From, from))
     {
         return false;
     }
     const auto card = _exchange.Received(*message, now);
     if (!card)
     {
+        _replay.GoOn(message->From, now);
         return true;
     }
+    const bool isNew = !_replay.Has(card->Of);
+    IsThere(card->Of, from);
     const auto unpacked = UnpackCard(card->Packed);
     if (!unpacked || !_replay.Put(card->Of, *unpacked, now))
     {
         _exchange.Refuse(card->Of, now);
         return false;
     }
-    _programs.erase(card->Of);
+    if (_programs.erase(card->Of) > 0)
+    {
+        _replay.EndFirst(card->Of);  // anybody can announce it as a program without a card
+    }
     NoteSuccessor(card->Of);
+    NoteStranger(card->Of, from, isNew);
     return true;
+}
+
+void Meeting::NoteStranger(const GuidPrefix &peer, const HostAddress &from, bool isNew)
+{
+    const auto found = _strangers.find(peer);
+    if (!isNew && found == _strangers.end())
+    {
+        return;  // it has spoken
+    }
+    Stranger &stranger = _strangers[peer];
+    stranger.Turn = found == _strangers.end() ? ++_turn : stranger.Turn;
+    stranger.Host = from;
+    _bytesOfStrangers -= stranger.Bytes;
+    stranger.Bytes = _replay.BytesOf(peer);
+    _bytesOfStrangers += stranger.Bytes;
+    while (_strangers.size() > MostStrangers || _bytesOfStrangers > MostOfStrangers)
+    {
+        std::map<HostAddress, std::size_t> costs;
+        for (const auto &[name, each] : _strangers)
+        {
+            costs[each.Host] += each.Bytes + MostOfStrangers / MostStrangers;
+        }
+        const auto dearest = std::max_element(
+            costs.begin(), costs.end(), [](const auto &a, const auto &b) { return a.second < b.second; });
+        const auto isOlder = [&](const auto &a, const auto &b)
+        {
+            const bool isOfDearest = a.second.Host == dearest->first;
+            return isOfDearest != (b.second.Host == dearest->first) ? isOfDearest
+                                                                    : a.second.Turn < b.second.Turn;
+        };
+        End(GuidPrefix(std::min_element(_strangers.begin(), _strangers.end(), isOlder)->first));
+    }
+}
+
+void Meeting::Spoke(const GuidPrefix &peer)
+{
+    const auto found = _strangers.find(peer);
+    if (found != _strangers.end())
+    {
+        _bytesOfStrangers -= found->second.Bytes;
+        _strangers.erase(found);
+    }
 }
 
 void Meeting::NoteSuccessor(const GuidPrefix &peer)
@@ -155,6 +205,7 @@ void Meeting::Lost(const GuidPrefix &peer)
     _places.erase(peer);
     _programs.erase(peer);
     _superseded.erase(peer);
+    Spoke(peer);
 }
 
 std::optional<Meeting::TimePoint> Meeting::LocalDue() const

@@ -29,6 +29,9 @@ namespace Rabit::Rtps
 // A silent participant is remembered for Settings::Memory. If another participant of the same name has
 // appeared since, the silent one is ended (CardReplay::End).
 //
+// Anybody can send cards of participants that do not exist. Until a participant has spoken (Ledger.h) it is a
+// stranger. Of too many strangers, those of the host that has most are ended, the oldest first.
+//
 // A pure state machine, not thread-safe.
 class Meeting
 {
@@ -50,6 +53,9 @@ public:
     static constexpr std::size_t MostRemembered = 1024;
     // If more participants with cards are known, those that are silent for longest are ended.
     static constexpr std::size_t MostSilent = 256;
+    // Strangers, and bytes of all their cards.
+    static constexpr std::size_t MostStrangers = 256;
+    static constexpr std::size_t MostOfStrangers = 4 * 1024 * 1024;
 
     explicit Meeting(const Settings &settings)
         : _settings(settings),
@@ -72,6 +78,8 @@ public:
     void Announced(const GuidPrefix &peer, bool hasCard, TimePoint now);
     // A participant said goodbye. It is ignored for a while (RecentGoodbyes.h).
     void SaidGoodbye(const GuidPrefix &peer, TimePoint now);
+    // An endpoint of the participant has spoken.
+    void Spoke(const GuidPrefix &peer);
     // The implementation has lost a participant.
     void Lost(const GuidPrefix &peer);
     // True if the implementation learns of that participant here. Endpoint discovery in the participant's
@@ -107,6 +115,7 @@ private:
     bool IsForPrograms(const GuidPrefix &to, TimePoint now);
     void Say(const EndpointSubmessage &said, std::span<const std::uint8_t> header, TimePoint now);
     void NoteSuccessor(const GuidPrefix &peer);
+    void NoteStranger(const GuidPrefix &peer, const HostAddress &from, bool isNew);
 
     const Settings _settings;
     GuidPrefix _self{};
@@ -118,6 +127,15 @@ private:
     std::map<GuidPrefix, Claim<HostAddress>> _places;  // source addresses of their card messages
     std::map<GuidPrefix, TimePoint> _programs;         // without a card: when each was last announced
     std::map<GuidPrefix, std::string> _superseded;
+    struct Stranger
+    {
+        HostAddress Host{};
+        std::size_t Bytes = 0;
+        std::uint64_t Turn = 0;  // rises with each
+    };
+    std::map<GuidPrefix, Stranger> _strangers;
+    std::size_t _bytesOfStrangers = 0;
+    std::uint64_t _turn = 0;
     RecentGoodbyes _goodbyes;
     RecentMap<GuidPrefix, std::monostate> _ended{64};
 };

@@ -73,6 +73,12 @@ void MeetingThread::Gone(const GuidPrefix &peer)
     With([&](auto now) { _meeting.SaidGoodbye(peer, now); });
 }
 
+void MeetingThread::Spoke(const GuidPrefix &peer)
+{
+    const std::lock_guard lock(_mutex);
+    _meeting.Spoke(peer);
+}
+
 bool MeetingThread::IsReplayed(const GuidPrefix &peer) const
 {
     const std::lock_guard lock(_mutex);

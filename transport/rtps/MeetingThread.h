@@ -53,6 +53,7 @@ public:
     void HeardUnknown(const GuidPrefix &peer) override;
     void Announced(const GuidPrefix &peer, bool hasCard) override;
     void Gone(const GuidPrefix &peer) override;
+    void Spoke(const GuidPrefix &peer) override;
     bool IsReplayed(const GuidPrefix &peer) const override;
 
 private:

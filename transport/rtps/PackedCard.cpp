@@ -3,6 +3,8 @@
 #include <rabit/base/Fnv1a.h>
 #include <zstd.h>
 
+#include <algorithm>
+
 namespace Rabit::Rtps
 {
 
@@ -22,7 +24,8 @@ std::vector<std::uint8_t> PackCard(std::span<const std::uint8_t> card)
 std::optional<std::vector<std::uint8_t>> UnpackCard(std::span<const std::uint8_t> packed)
 {
     const auto size = ZSTD_getFrameContentSize(packed.data(), packed.size());
-    if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR || size > LargestUnpackedCard)
+    if (size == ZSTD_CONTENTSIZE_UNKNOWN || size == ZSTD_CONTENTSIZE_ERROR ||
+        size > std::min(LargestUnpackedCard, LargestDensity * packed.size()))
     {
         return std::nullopt;
     }

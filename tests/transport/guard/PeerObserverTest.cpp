@@ -22,11 +22,13 @@ public:
     void HeardUnknown(const GuidPrefix &peer) override { Unknown.push_back(peer); }
     void Announced(const GuidPrefix &peer, bool hasCard) override { Heard.emplace_back(peer, hasCard); }
     void Gone(const GuidPrefix &peer) override { Left.push_back(peer); }
+    void Spoke(const GuidPrefix &peer) override { Spoken.push_back(peer); }
     bool IsReplayed(const GuidPrefix &) const override { return Replays; }
 
     std::vector<GuidPrefix> Unknown;
     std::vector<std::pair<GuidPrefix, bool>> Heard;
     std::vector<GuidPrefix> Left;
+    std::vector<GuidPrefix> Spoken;
     bool Replays = false;
 };
 
@@ -99,6 +101,45 @@ TEST_F(PeerObserverTest, TheLeaseInACardIsNotCut)
     const Bytes announcement = AnnouncementWithCard(4 * 3600);
     EXPECT_EQ(Admit(announcement, RtpsGuard::Origin::Card), 1u);
     EXPECT_EQ(Handed, announcement);
+}
+
+TEST_F(PeerObserverTest, AParticipantWithACardIsNotAnnouncedWithoutOne)
+{
+    ASSERT_EQ(Admit(AnnouncementWithCard(), RtpsGuard::Origin::Card), 1u);
+    Seen.Replays = true;
+    std::size_t handed = 0;
+    for (int i = 0; i < 100; ++i)
+    {
+        Now += std::chrono::seconds(1);
+        Bytes plain = ParticipantMessage();
+        EXPECT_FALSE(Guard.Admit(plain, SenderHost, Now, [&](auto) { ++handed; }));
+    }
+    EXPECT_EQ(handed, 0u);
+    EXPECT_TRUE(Seen.Heard.empty());
+}
+
+// Somebody has announced it, with another address and without a card.
+TEST_F(PeerObserverTest, ACardIsBelievedAfterItHasEndedAnAnnouncementWithoutOne)
+{
+    ASSERT_EQ(Admit(ParticipantMessage()), 1u);
+    EXPECT_FALSE(Guard.Admit(
+        *std::make_unique<Bytes>(AnnouncementWithCard()), SenderHost, Now, [](auto) {},
+        RtpsGuard::Origin::Card));
+    EXPECT_EQ(Admit(Goodbye(2), RtpsGuard::Origin::Card), 1u);
+    EXPECT_EQ(Admit(AnnouncementWithCard(), RtpsGuard::Origin::Card), 1u);
+}
+
+TEST_F(PeerObserverTest, AnEndpointThatSpeaksIsToldOnce)
+{
+    ASSERT_EQ(Admit(ParticipantMessage()), 1u);
+    ASSERT_EQ(
+        Admit(Message(Data, DataBody(1, WriterData(UserWriter), Rabit::Rtps::PublicationsWriter), 0x05)), 1u);
+    EXPECT_TRUE(Seen.Spoken.empty());
+    for (std::int64_t number = 1; number <= 3; ++number)
+    {
+        EXPECT_EQ(Admit(Message(Data, DataBody(number), 0x05)), 1u);
+    }
+    EXPECT_EQ(Seen.Spoken, std::vector<GuidPrefix>{Sender});
 }
 
 // The numbers in a replay are not the participant's own.

@@ -339,4 +339,43 @@ TEST_F(Exchanging, ANewcomerWhoseCardIsCompleteHearsOfANodeThatWasSilent)
     EXPECT_FALSE(greeting->To.has_value());
 }
 
+// Somebody repeats what was heard before, again and again.
+TEST_F(Exchanging, AnOlderSummaryDoesNotReplaceTheOneThatIsWanted)
+{
+    const auto summaryOf = [](const std::vector<std::uint8_t> &card) { return SummaryOf(card); };
+    const std::vector<std::uint8_t> older(100, 1);
+    const std::vector<std::uint8_t> newer(200, 2);
+    Receive({.From = Name(2), .Summary = summaryOf(newer)});
+    std::optional<CardExchange::Card> card;
+    for (int i = 0; i < 100; ++i)
+    {
+        Receive({.From = Name(2), .Summary = summaryOf(older)}, 10s);
+        Now += 10ms;
+    }
+    CardMessage part{.From = Name(2), .Summary = summaryOf(newer), .HasPart = true};
+    part.SentAt = QueueingDelay::Stamp(Now);
+    part.Bytes = newer;
+    card = Exchange.Received(part, Now);
+    ASSERT_TRUE(card.has_value());
+    EXPECT_EQ(card->Packed, newer);
+}
+
+// An invented summary of tomorrow must not keep the true one away for good.
+TEST_F(Exchanging, ASummaryWhoseCardDoesNotComeIsReplacedByAnOlderOne)
+{
+    const std::vector<std::uint8_t> card(100, 1);
+    Receive({.From = Name(2), .Summary = {.Digest = 7, .Size = 100}}, -24h);
+    CardMessage part{.From = Name(2), .Summary = SummaryOf(card), .HasPart = true};
+    part.Bytes = card;
+    for (const auto wait : {0ms, 1000ms})
+    {
+        Now += wait;
+        part.SentAt = QueueingDelay::Stamp(Now);
+        EXPECT_FALSE(Exchange.Received(part, Now).has_value());
+    }
+    Now += 1s;
+    part.SentAt = QueueingDelay::Stamp(Now);
+    EXPECT_TRUE(Exchange.Received(part, Now).has_value());
+}
+
 }  // namespace

@@ -115,10 +115,35 @@ TEST(PackedCard, IsTheSameAfterPackingAndUnpacking)
     EXPECT_EQ(UnpackCard(packed), card);
 }
 
-TEST(PackedCard, OfZerosWithoutEndIsRefused)
+TEST(PackedCard, DenserThanAnyHonestOneIsRefused)
 {
     EXPECT_TRUE(PackCard(Bytes(LargestUnpackedCard + 1)).empty());
-    Bytes packed = PackCard(Bytes(LargestUnpackedCard));
+    const Bytes packed = PackCard(Bytes(LargestUnpackedCard));
+    ASSERT_LT(packed.size(), 300u);
+    EXPECT_FALSE(UnpackCard(packed).has_value());
+}
+
+// Names, keys and numbers differ, all else is the same.
+TEST(PackedCard, OfAThousandEndpointsIsFarFromThatDensity)
+{
+    using namespace RtpsBytes;
+    constexpr GuidPrefix name{1, 15, 7};
+    Bytes card = Header(name);
+    for (std::uint32_t endpoint = 1; endpoint <= 1000; ++endpoint)
+    {
+        card =
+            Join({card, RtpsBytes::Submessage(
+                            Data, DataBody(endpoint, WriterData(endpoint << 8 | 3, name), 0x000003c2), 5)});
+    }
+    const Bytes packed = PackCard(card);
+    std::printf("%zu bytes pack to %zu\n", card.size(), packed.size());
+    EXPECT_LT(card.size(), LargestDensity / 2 * packed.size());
+    EXPECT_EQ(UnpackCard(packed), card);
+}
+
+TEST(PackedCard, ThatStatesALargerSizeIsRefused)
+{
+    Bytes packed = PackCard(Bytes(1000));
     ASSERT_TRUE(UnpackCard(packed).has_value());
     // The packed card now states a larger size.
     packed[5 + 2] = 0x7f;

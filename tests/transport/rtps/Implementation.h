@@ -80,7 +80,9 @@ public:
         const auto found = _peers.find(peer);
         if (found != _peers.end())
         {
-            for (const auto &[number, entity] : found->second.Heard)
+            const auto writers = found->second.Heard.find(Rabit::Rtps::PublicationsWriter);
+            for (const auto &[number, entity] :
+                 writers == found->second.Heard.end() ? Numbers{} : writers->second)
             {
                 endpoints.insert(entity);
             }
@@ -95,9 +97,10 @@ public:
     }
 
 private:
+    using Numbers = std::map<std::int64_t, EntityId>;  // 0: will not come
     struct Peer
     {
-        std::map<std::int64_t, EntityId> Heard;  // 0: will not come
+        std::map<EntityId, Numbers> Heard;  // by the announcing writer
         std::int64_t Acknowledged = 1;
     };
 
@@ -147,30 +150,35 @@ private:
     void Take(const Prefix &peer, Peer &known, const Rabit::Rtps::EndpointSubmessage &part)
     {
         using Rabit::Rtps::SubmessageKind;
-        if (part.Kind == SubmessageKind::Data && part.Said.Writer == Rabit::Rtps::PublicationsWriter)
+        Numbers &heard = known.Heard[part.Said.Writer];
+        if (part.Kind == SubmessageKind::Data)
         {
-            known.Heard[part.Said.First] = Rabit::Rtps::SubjectOf(part.Whole);
+            const EntityId subject = Rabit::Rtps::SubjectOf(part.Whole);
+            for (auto &[number, entity] : heard)
+            {
+                entity = entity == subject ? 0 : entity;
+            }
+            heard[part.Said.First] = part.Said.Alive ? subject : 0;
         }
         else if (part.Kind == SubmessageKind::Gap)
         {
             for (const std::int64_t number : part.Gone)
             {
-                known.Heard.emplace(number, EntityId{0});
+                heard.emplace(number, EntityId{0});
             }
         }
         else if (part.Kind == SubmessageKind::Heartbeat)
         {
             Bytes message = To(peer);
-            const bool all = part.Said.Writer == Rabit::Rtps::PublicationsWriter;
             std::int64_t base = 1;
             std::vector<std::int64_t> missing;
-            while (all && known.Heard.contains(base))
+            while (heard.contains(base))
             {
                 ++base;
             }
-            for (std::int64_t number = base; all && number <= part.Said.Last; ++number)
+            for (std::int64_t number = base; number <= part.Said.Last; ++number)
             {
-                if (!known.Heard.contains(number))
+                if (!heard.contains(number))
                 {
                     missing.push_back(number);
                 }

@@ -452,11 +452,36 @@ TEST_F(MeetingOfTwo, AParticipantThatWasForgottenOnTheWayIsToldOfAgain)
     EXPECT_TRUE(Channel.Until([&] { return Two.Dds->EndpointsOf(One.Self).size() == 8; }, 500ms));
 }
 
+// A card of a participant, with writers of these numbers.
+Bytes CardOf(const GuidPrefix &name, std::initializer_list<std::uint32_t> writers)
+{
+    using namespace RtpsBytes;
+    Bytes card =
+        Join({Header(name), RtpsBytes::Submessage(Data, DataBody(1, ParticipantData(name), 0x000100c2), 5)});
+    std::int64_t number = 0;
+    for (const std::uint32_t writer : writers)
+    {
+        const Bytes body = DataBody(++number, WriterData(writer << 8 | 3, name), 0x000003c2);
+        card = Join({card, RtpsBytes::Submessage(Data, body, 5)});
+    }
+    return card;
+}
+
+// The message that brings that card whole.
+Bytes CardMessageOf(const GuidPrefix &name, std::initializer_list<std::uint32_t> writers)
+{
+    const Bytes packed = PackCard(CardOf(name, writers));
+    CardMessage message{.From = name, .Summary = SummaryOf(packed)};
+    message.HasPart = true;
+    message.Bytes = packed;
+    return WriteCardMessage(message);
+}
+
 TEST(Meeting, ACardThatCameFromElsewhereIsNotBelievedBeforeItCameOften)
 {
     Meeting meeting({.Period = 10s, .Memory = 4h});
     const TimePoint now{1h};
-    const Bytes summary = WriteCardMessage({.From = Name(7), .Summary = {.Digest = 1, .Size = 500}});
+    const Bytes summary = CardMessageOf(Name(7), {1, 2});
     EXPECT_TRUE(meeting.Received(summary, Host, false, now));
     const HostAddress elsewhere{10, 0, 0, 66};
     EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
@@ -471,7 +496,7 @@ TEST(Meeting, ACardFromAnotherAddressThatItsSenderHasNamedIsBelieved)
 {
     Meeting meeting({.Period = 10s, .Memory = 4h});
     const TimePoint now{1h};
-    const Bytes summary = WriteCardMessage({.From = Name(7), .Summary = {.Digest = 1, .Size = 500}});
+    const Bytes summary = CardMessageOf(Name(7), {1, 2});
     EXPECT_TRUE(meeting.Received(summary, Host, false, now));
     EXPECT_TRUE(meeting.Received(summary, HostAddress{10, 0, 0, 2}, true, now));
 }
@@ -496,6 +521,120 @@ TEST(Meeting, InventedParticipantsCauseFewRequests)
     }
     air.Run(5s);
     EXPECT_LE(air.Offered, 6u * 2000u);
+}
+
+// Gives the replayed messages to the implementation, and its answers back, until nothing is due.
+void Settle(CardReplay &replay, Implementation &dds, std::vector<Bytes> &said, CardReplay::TimePoint now)
+{
+    const OwnCard own;
+    for (int turn = 0; turn < 100 && replay.Due(); ++turn)
+    {
+        now = std::max(now, *replay.Due());
+        for (const CardReplay::Message &message : replay.TakeDue(now, own))
+        {
+            dds.Receive(message.Bytes);
+        }
+        for (const Bytes &answer : std::exchange(said, {}))
+        {
+            const auto parts = ReadEndpointSubmessages(answer);
+            for (const EndpointSubmessage &part : parts.value_or(std::vector<EndpointSubmessage>()))
+            {
+                replay.Said(part, now);
+            }
+        }
+    }
+}
+
+TEST(CardReplayTest, ANewCardReplacesTheFormerOneEntirely)
+{
+    constexpr GuidPrefix self{1, 15, 1};
+    constexpr GuidPrefix peer{1, 15, 2};
+    std::vector<Bytes> said;
+    Implementation dds(self, [&said](const Bytes &message) { said.push_back(message); });
+    CardReplay replay(1h);
+    replay.SetSelf(self);
+    const CardReplay::TimePoint now(1h);
+    ASSERT_TRUE(replay.Put(peer, CardOf(peer, {1, 2}), now));
+    Settle(replay, dds, said, now);
+    EXPECT_EQ(dds.EndpointsOf(peer), (std::set<EntityId>{0x103, 0x203}));
+    const std::size_t bytes = replay.BytesOf(peer);
+    for (std::uint32_t writer = 3; writer < 300; ++writer)
+    {
+        ASSERT_TRUE(replay.Put(peer, CardOf(peer, {2, writer}), now));
+        Settle(replay, dds, said, now);
+        ASSERT_EQ(dds.EndpointsOf(peer), (std::set<EntityId>{0x203, writer << 8 | 3}));
+        ASSERT_EQ(replay.BytesOf(peer), bytes);
+    }
+}
+
+TEST(CardReplayTest, AnImplementationThatAcknowledgesNothingMakesItKeepNoMoreThanTwoCards)
+{
+    constexpr GuidPrefix peer{1, 15, 2};
+    CardReplay replay(1h);
+    const CardReplay::TimePoint now(1h);
+    ASSERT_TRUE(replay.Put(peer, CardOf(peer, {1}), now));
+    const std::size_t one = replay.BytesOf(peer);
+    for (std::uint32_t writer = 2; writer < 5000; ++writer)
+    {
+        ASSERT_TRUE(replay.Put(peer, CardOf(peer, {writer}), now));
+    }
+    EXPECT_LE(replay.BytesOf(peer), (2 * OwnCard::MostEndpoints + 1) * one);
+}
+
+TEST(CardReplayTest, ACardAfterAnotherAnnouncementEndsThatFirst)
+{
+    constexpr GuidPrefix peer{1, 15, 2};
+    CardReplay replay(1h);
+    const CardReplay::TimePoint now(1h);
+    ASSERT_TRUE(replay.Put(peer, CardOf(peer, {1}), now));
+    replay.EndFirst(peer);
+    const auto messages = replay.TakeDue(now, OwnCard());
+    ASSERT_GE(messages.size(), 2u);
+    const auto said = [&](std::size_t message)
+    {
+        std::vector<bool> alive;
+        VisitSubmessages(std::span<const std::uint8_t>(messages[message].Bytes),
+                         [&](const ConstSubmessage &part)
+                         {
+                             const auto announcement = ReadAnnouncement(part.Whole);
+                             if (announcement && announcement->Writer == ParticipantWriter)
+                             {
+                                 alive.push_back(announcement->Alive);
+                             }
+                         });
+        return alive;
+    };
+    EXPECT_EQ(said(0), std::vector<bool>{false});
+    EXPECT_EQ(said(1), std::vector<bool>{true});
+}
+
+TEST(MeetingStrangers, OfTooManyThoseOfTheHostThatHasMostAreEnded)
+{
+    Meeting meeting({.Period = 10s, .Memory = 4h});
+    const Meeting::TimePoint now(1h);
+    const auto nameOf = [](std::size_t number) {
+        return GuidPrefix{1, 15, 9, static_cast<std::uint8_t>(number >> 8),
+                          static_cast<std::uint8_t>(number)};
+    };
+    const auto come = [&](std::size_t number, std::uint8_t host) {
+        EXPECT_TRUE(meeting.Received(CardMessageOf(nameOf(number), {1, 2}), {10, 0, 0, host}, false, now));
+    };
+    constexpr std::size_t honest = 100;
+    for (std::size_t number = 0; number < honest; ++number)
+    {
+        come(number, static_cast<std::uint8_t>(number));
+    }
+    for (std::size_t number = honest; number < 5000; ++number)
+    {
+        come(number, 200);
+    }
+    std::size_t kept = 0;
+    for (std::size_t number = 0; number < 5000; ++number)
+    {
+        kept += meeting.IsReplayed(nameOf(number)) ? 1 : 0;
+        EXPECT_TRUE(number >= honest || meeting.IsReplayed(nameOf(number))) << number;
+    }
+    EXPECT_EQ(kept, Meeting::MostStrangers);
 }
 
 TEST_F(MeetingOfTwo, WhatAnEarlierSessionOfANodeSaidEndsOnceItIsSilent)

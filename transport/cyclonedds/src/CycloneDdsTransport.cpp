@@ -64,7 +64,7 @@ private:
         settings.Peers.clear();
         const VendorDomain domain(settings, std::make_shared<SessionLog>(settings),
                                   std::make_shared<DiscoveryTurns>(),
-                                  std::make_shared<Rtps::RecentGoodbyes>());
+                                  std::make_shared<Rtps::RecentGoodbyes>(), std::make_shared<Rtps::Ledger>());
     }
 };
 

@@ -136,7 +136,7 @@ RemoteEndpoint Described(const dds_builtintopic_endpoint_t &announced, const Wri
 
 SessionCore::SessionCore(const TransportSettings &settings, const SessionContext &context)
     : VendorCore(settings, context),
-      _domain(settings, Log(), context.Turns, _goodbyes),
+      _domain(settings, Log(), context.Turns, _goodbyes, _accounts),
       _announcements(AnswerGap(settings), _domain.HasCard()),
       _participant(MakeParticipant(settings, _domain.Id(), _domain.HasCard()))
 {
@@ -248,6 +248,7 @@ void SessionCore::PeerGone(const Rtps::GuidPrefix &prefix)
     const auto how = isSilent ? PeerEvent::Kind::Lost : PeerEvent::Kind::Left;
     if (how == PeerEvent::Kind::Lost)
     {
+        _accounts->Left(prefix);
         _domain.Lost(prefix);
     }
     const auto session = Gone(prefix, how);

@@ -249,6 +249,12 @@ bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t s
                       [&domain, to = *route, bytes = std::vector<std::uint8_t>(datagram, datagram + size)]
                       {
                           const SendingSamples sending;
+                          RabitCyclonePlace place{.address = {}, .port = to.port};
+                          std::copy_n(to.address, sizeof place.address, place.address);
+                          if (!MayGo(&domain, &place, bytes.size()))
+                          {
+                              return;
+                          }
                           const RabitCycloneWays ways = WaysTo(&domain, to.address);
                           if (ways.group)
                           {
@@ -272,6 +278,21 @@ RabitCycloneWays VendorDomain::WaysTo(void *self, const unsigned char *address)
     const bool isAwaited = domain._meets && domain._multicast && domain._addresses.IsAwaited(host, now) &&
                            domain._guard.GroupReaches(host, now - HardwareAddresses::InReach);
     return {.host = !isAwaited || domain._addresses.HasToAsk(host, now), .group = isAwaited};
+}
+
+bool VendorDomain::MayGo(void *self, const RabitCyclonePlace *place, std::size_t size)
+{
+    auto &domain = *static_cast<VendorDomain *>(self);
+    Rtps::Place to{.Host = {}, .Port = static_cast<std::uint16_t>(place->port)};
+    std::copy_n(place->address, to.Host.size(), to.Host.begin());
+    if (IsGroup(to.Host))
+    {
+        return true;
+    }
+    const auto now = std::chrono::steady_clock::now();
+    const auto going = domain._guard.MayGo(to, size, now);
+    return going == Rtps::Ledger::Going::Freely ||
+           (going == Rtps::Ledger::Going::AsToStranger && domain._addresses.MayAsk(to.Host, now));
 }
 
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
@@ -328,7 +349,7 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     if (domain._meets && Rtps::IsCardMessage({datagram, size}))
     {
         if (!domain._meeting.Received({datagram, size}, host,
-                                      domain._guard.IsKnownAt(Rtps::SenderOf({datagram, size}), host)))
+                                      domain._guard.IsKnownAt({datagram, size}, host)))
         {
             domain._log->MalformedDatagram();
         }
@@ -374,7 +395,8 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
 
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
                            const std::shared_ptr<DiscoveryTurns> &turns,
-                           std::shared_ptr<Rtps::RecentGoodbyes> goodbyes)
+                           std::shared_ptr<Rtps::RecentGoodbyes> goodbyes,
+                           std::shared_ptr<Rtps::Ledger> accounts)
     : _id(static_cast<dds_domainid_t>(settings.Domain), FirstOther),
       _log(log),
       _multicast(IsMulticastForData(settings)),
@@ -387,8 +409,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       _cardRoutes(settings.AnnouncementPeriod),
       _goodbyes(std::move(goodbyes)),
       // The vendor itself checks which fragments it has sent.
-      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Vendor::CycloneDds,
-             _goodbyes),
+      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Vendor::CycloneDds, _goodbyes,
+             std::move(accounts)),
       _keys(turns, settings.MaxDatagram)
 {
     if (_secured)
@@ -451,6 +473,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                                 .holds = [] { return HeldDatagrams::OfThisThread() != nullptr; },
                                 .hold = &Hold,
                                 .waysTo = &WaysTo,
+                                .mayGo = &MayGo,
                                 .sent = &OnSent,
                                 .received = &OnReceived});
     _meets = _meets && _watch != nullptr;

@@ -31,10 +31,10 @@ class VendorDomain
 {
 public:
     // Throws TransportError. The vendor's messages about the domain go to the log. The exchange of cards
-    // waits for `turns`. `goodbyes`: as RtpsGuard.
+    // waits for `turns`. `goodbyes`, `accounts`: as RtpsGuard.
     VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                 const std::shared_ptr<DiscoveryTurns> &turns,
-                 std::shared_ptr<Rtps::RecentGoodbyes> goodbyes);
+                 const std::shared_ptr<DiscoveryTurns> &turns, std::shared_ptr<Rtps::RecentGoodbyes> goodbyes,
+                 std::shared_ptr<Rtps::Ledger> accounts);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;
@@ -73,6 +73,7 @@ private:
     static bool Hold(void *self, const unsigned char *datagram, std::size_t size,
                      const RabitCycloneRoute *route);
     static RabitCycloneWays WaysTo(void *self, const unsigned char *address);
+    static bool MayGo(void *self, const RabitCyclonePlace *place, std::size_t size);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);

@@ -53,7 +53,8 @@ static _Thread_local struct Targets targets;
 
 static struct Watch Find(const struct ddsi_domaingv *domain)
 {
-    struct Watch found = {NULL, NULL, NULL, {NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL}, NULL, NULL};
+    struct Watch found;
+    memset(&found, 0, sizeof found);
     pthread_rwlock_rdlock(&lock);
     for (const struct Watch *watch = first; watch != NULL; watch = watch->next)
     {
@@ -91,6 +92,14 @@ static size_t SizeOf(size_t parts, const ddsrt_iovec_t *part)
     return size;
 }
 
+static bool MayGo(const struct Watch *watch, const ddsi_locator_t *destination, size_t size)
+{
+    struct RabitCyclonePlace place = {.port = destination->port};
+    memcpy(place.address, destination->address + AddressAt, sizeof place.address);
+    return destination->kind != NN_LOCATOR_KIND_UDPv4 ||
+           watch->calls.mayGo(watch->calls.argument, &place, size);
+}
+
 static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connection,
                               const ddsi_locator_t *destination, size_t parts, const ddsrt_iovec_t *part,
                               uint32_t flags)
@@ -99,12 +108,13 @@ static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connec
     const size_t size = SizeOf(parts, part);
     if (size > sizeof datagram)
     {
-        return watch->write(connection, destination, parts, part, flags);
+        return MayGo(watch, destination, size) ? watch->write(connection, destination, parts, part, flags)
+                                               : 0;
     }
     const ddsrt_iovec_t whole = {datagram, Gather(datagram, sizeof datagram, parts, part)};
     struct RabitCycloneRoute route = {.connection = connection, .port = destination->port};
     memcpy(route.address, destination->address + AddressAt, sizeof route.address);
-    if (!watch->calls.may(watch->calls.argument, datagram, size, &route))
+    if (!watch->calls.may(watch->calls.argument, datagram, size, &route) || !MayGo(watch, destination, size))
     {
         return 0;
     }
@@ -181,6 +191,11 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
     unsigned char head[HeadSize];
     const size_t filled = Gather(head, sizeof head, parts, part);
     const bool isDiscovery = watch.calls.isDiscovery(head, filled);
+    const size_t whole = SizeOf(parts, part);
+    if (!isDiscovery && !MayGo(&watch, destination, whole))
+    {
+        return (ssize_t)whole;
+    }
     const struct RabitCycloneWays ways =
         isDiscovery || destination->kind != NN_LOCATOR_KIND_UDPv4 || IsGroup(destination) ||
                 part[0].iov_len < RtpsHeaderSize || parts > MostParts
@@ -198,7 +213,7 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
         watch.calls.sent(watch.calls.argument, head, filled, (size_t)size);
     }
     /* Datagrams that are not sent are reported to the vendor as sent. */
-    return size == 0 ? (ssize_t)SizeOf(parts, part) : size;
+    return size == 0 ? (ssize_t)whole : size;
 }
 
 static bool IsSame(const ddsi_locator_t *one, const ddsi_locator_t *other)

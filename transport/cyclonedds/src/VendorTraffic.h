@@ -52,6 +52,9 @@ extern "C"
         /* Where a datagram of samples for that address alone goes: to the host, to the group of samples, or
            both. */
         struct RabitCycloneWays (*waysTo)(void *argument, const unsigned char *address);
+        /* True if a datagram of that size may go to the address. If not, the vendor is told that it was
+           sent. */
+        bool (*mayGo)(void *argument, const struct RabitCyclonePlace *place, size_t size);
         /* The datagram was given to a socket. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
         /* A datagram was received, into a buffer of that capacity, where it may be changed in place. Returns

@@ -52,8 +52,8 @@ public:
     explicit GuardedUdp(const GuardedUdpDescriptor &descriptor)
         : ChainedUdp(descriptor),
           _descriptor(descriptor),
-          _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod,
-                 RtpsGuard::Vendor::FastDds, descriptor.Chosen().Goodbyes),
+          _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod, RtpsGuard::Vendor::FastDds,
+                 descriptor.Chosen().Goodbyes, descriptor.Chosen().Accounts),
           _input(descriptor.Chosen().GroupPort,
                  AwaitsProtectedAnnouncements && descriptor.Chosen().Authentication != nullptr),
           _output(_descriptor.Chosen(), _guard, *low_level_transport_),
@@ -207,8 +207,7 @@ public:
         }
         if (Meeting() != nullptr && IsCardMessage(datagram))
         {
-            if (Meeting()->Received(datagram, HostOf(remote),
-                                    _guard.IsKnownAt(SenderOf(datagram), HostOf(remote))))
+            if (Meeting()->Received(datagram, HostOf(remote), _guard.IsKnownAt(datagram, HostOf(remote))))
             {
                 _input.NoteCardPort(local.port);
             }

@@ -65,6 +65,8 @@ public:
         std::shared_ptr<Rtps::AuthenticationThread> Authentication{};
         // Where the guard notes the goodbyes of known participants.
         std::shared_ptr<Rtps::RecentGoodbyes> Goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
+        // Where the guard keeps the accounts of participants.
+        std::shared_ptr<Rtps::Ledger> Accounts = std::make_shared<Rtps::Ledger>();
         // The group to which samples go; empty: they go to each host separately.
         std::optional<rtps::Locator_t> SampleGroup{};
         // Peers are listed; they may not hear the group.

@@ -89,7 +89,8 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                                                  .Keys = _keys,
                                                  .Meeting = _meeting,
                                                  .Authentication = _authentication,
-                                                 .Goodbyes = _goodbyes});
+                                                 .Goodbyes = _goodbyes,
+                                                 .Accounts = _accounts});
     attributes.participantID = static_cast<std::int32_t>(_number.Get());
     attributes.prefix = MakeGuidPrefix();
     SetLibraryDefaults();
@@ -232,6 +233,7 @@ void SessionCore::PeerGone(const Rtps::GuidPrefix &peer, PeerEvent::Kind how)
     const bool isForgotten = _authentication->WasForgotten(peer);
     if (how == PeerEvent::Kind::Lost)
     {
+        _accounts->Left(peer);
         _meeting->Lost(peer);
     }
     else if (_meeting->WasEnded(peer) || isForgotten)

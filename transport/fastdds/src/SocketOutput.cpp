@@ -94,13 +94,35 @@ std::size_t SocketOutput::DatagramsTo(const rtps::SenderResource *socket, const 
                                                   { return Leaves(number, destination); }));
 }
 
+bool SocketOutput::MayGo(const rtps::Locator_t &destination, std::size_t bytes, TimePoint now)
+{
+    if (IsGroup(destination))
+    {
+        return true;
+    }
+    const HostAddress host = HostOf(destination);
+    const Place place{.Host = host, .Port = static_cast<std::uint16_t>(destination.port)};
+    const auto going = _guard.MayGo(place, bytes, now);
+    return going == Ledger::Going::Freely ||
+           (going == Ledger::Going::AsToStranger && _addresses.MayAsk(host, now));
+}
+
 bool SocketOutput::Send(rtps::SenderResource *socket, const Destinations &destinations,
                         std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout)
 {
-    const std::size_t datagrams = DatagramsTo(socket, destinations);
-    _settings.OnSent(samples, datagrams, datagrams * datagram.size());
-    rtps::Locators first(destinations.cbegin());
-    rtps::Locators last(destinations.cend());
+    const std::uint32_t number = NumberOf(socket);
+    const auto now = std::chrono::steady_clock::now();
+    _allowed.clear();
+    for (const rtps::Locator_t &destination : destinations)
+    {
+        if (Leaves(number, destination) && MayGo(destination, datagram.size(), now))
+        {
+            _allowed.push_back(destination);
+        }
+    }
+    _settings.OnSent(samples, _allowed.size(), _allowed.size() * datagram.size());
+    rtps::Locators first(_allowed.cbegin());
+    rtps::Locators last(_allowed.cend());
     return ChainedUdp::SendOn(*socket, datagram, first, last, timeout);
 }
 

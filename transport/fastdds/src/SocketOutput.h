@@ -59,14 +59,16 @@ public:
                                        Destinations &destinations);
     // Number of datagrams that Send will send.
     std::size_t DatagramsTo(const rtps::SenderResource *socket, const Destinations &destinations);
-    // Sends to those of the destinations to which the socket sends, and counts the datagrams (OnSent).
-    // `samples`: it has samples. Returns false if the socket fails.
+    // Sends to those of the destinations to which the socket sends and to which the datagram may go
+    // (Ledger.h), and counts the datagrams (OnSent). `samples`: it has samples. Returns false if the socket
+    // fails.
     bool Send(rtps::SenderResource *socket, const Destinations &destinations,
               std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout);
 
 private:
     bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const;
     std::uint32_t NumberOf(const rtps::Locator_t &destination);
+    bool MayGo(const rtps::Locator_t &destination, std::size_t bytes, TimePoint now);
 
     const GuardedUdpDescriptor::Settings &_settings;
     Rtps::RtpsGuard &_guard;
@@ -76,6 +78,7 @@ private:
     RecentNumbers<rtps::Locator_t> _destinations;
     std::map<const rtps::SenderResource *, std::uint32_t> _sockets;
     rtps::SendResourceList _noSockets;
+    Destinations _allowed;  // of the datagram to send
 };
 
 }  // namespace Rabit::FastDds
