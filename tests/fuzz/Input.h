@@ -13,6 +13,9 @@
 namespace Fuzz
 {
 
+// Parses one input. Each target defines it, and Work.cpp calls it.
+int OneInput(const std::uint8_t *data, std::size_t size);
+
 // Ends the process, which the fuzzer reports, unless it is true.
 inline void Require(bool holds)
 {

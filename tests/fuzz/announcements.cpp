@@ -2,7 +2,7 @@
 #include "wire/Announcements.h"
 #include "Input.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     const std::vector<std::uint8_t> bytes(data, data + size);
     const auto announcement = Rabit::Announcements::Decode(bytes);

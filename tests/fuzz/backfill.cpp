@@ -18,7 +18,7 @@ bool AreSame(const std::vector<Rabit::Backfill::Post> &some, const std::vector<R
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     Fuzz::Input input(data, size);
     Rabit::Backfill::Stamp first = 0;

@@ -3,7 +3,7 @@
 #include "presence/PresenceInbox.h"
 #include "wire/BeatExtensions.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     Rabit::PresenceInbox inbox;
     Rabit::SampleInfo info;

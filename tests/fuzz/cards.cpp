@@ -5,7 +5,7 @@
 #include "rtps/PackedCard.h"
 
 // Datagrams, each behind its size and the seconds since the one before.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     if (const auto card = Rabit::Rtps::UnpackCard({data, size}))
     {

@@ -34,7 +34,7 @@ void Read(const std::vector<std::uint8_t> &bytes)
 }  // namespace
 
 // Byte 0: the type.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     Fuzz::Input input(data, size);
     const unsigned choice = input.Byte() % 4;

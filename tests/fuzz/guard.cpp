@@ -7,7 +7,7 @@ using Rabit::Rtps::RtpsGuard;
 
 // Byte 0: the mode. Then datagrams, each behind a byte with the seconds since the one before and its source,
 // and behind its size.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     Fuzz::Input input(data, size);
     constexpr RtpsGuard::Mode modes[] = {RtpsGuard::Mode::Full, RtpsGuard::Mode::StructureOnly,
@@ -15,6 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
     const unsigned choice = input.Byte();
     RtpsGuard guard(modes[choice % 4], std::chrono::seconds(1));
     RtpsGuard::TimePoint now{std::chrono::hours(1)};
+    std::vector<std::uint8_t> buffer(65536);
     while (!input.IsEmpty())
     {
         const std::uint8_t how = input.Byte();
@@ -34,7 +35,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size
                         Fuzz::Require(Rabit::Rtps::HasRtpsHeader(message));
                         delivered.emplace_back(message.begin(), message.end());
                     });
-        std::vector<std::uint8_t> buffer(65536);
         Fuzz::Require(Rabit::Rtps::JoinMessages(delivered, buffer, 0) <= buffer.size());
     }
     return 0;

@@ -4,7 +4,7 @@
 #include "Input.h"
 
 // The name of the type, a line feed, and the text.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     const std::string_view all = Fuzz::TextOf(data, size);
     const std::size_t end = std::min(all.find('\n'), all.size());

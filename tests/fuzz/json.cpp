@@ -1,7 +1,7 @@
 // Values of `rabit post` and `rabit send`: JSON for a type with a member of every kind.
 #include "EveryKind.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     const auto encoded = Fuzz::EveryKind().FromJson(Fuzz::TextOf(data, size));
     Fuzz::Require(encoded.Sample.has_value() == encoded.Reason.empty());

@@ -31,7 +31,7 @@ void Decode(std::span<const std::uint8_t> bytes)
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     const std::vector<std::uint8_t> bytes(data, data + size);
     Decode(bytes);

@@ -4,7 +4,7 @@
 #include "mavlink/MavlinkMessages.h"
 
 // Parts, each behind its size, as datagrams or as reads of a serial line.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     Fuzz::Input input(data, size);
     Swarm::MavlinkParser parser;

@@ -37,7 +37,7 @@ public:
 
 }  // namespace
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     Memory memory({data, size});
     for (const auto &contents : {Rabit::Mcap::ReadContents(memory), Rabit::Mcap::ScanContents(memory)})

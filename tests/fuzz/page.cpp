@@ -37,7 +37,7 @@ void ReadHttp(std::string_view text)
 }  // namespace
 
 // Byte 0: which of the three. The rest is the text.
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     const unsigned choice = size == 0 ? 0 : data[0] % 3;
     const std::string_view text = Fuzz::TextOf(data, size).substr(std::min<std::size_t>(1, size));

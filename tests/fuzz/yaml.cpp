@@ -7,7 +7,7 @@
 
 #include "Input.h"
 
-extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, std::size_t size)
+int Fuzz::OneInput(const std::uint8_t *data, std::size_t size)
 {
     static const int file = memfd_create("configuration", 0);
     static const std::string path = "/proc/self/fd/" + std::to_string(file);

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <span>
 #include <vector>
 
@@ -14,8 +15,8 @@ namespace Rabit::Rtps
 {
 
 // An announcement is checked whole before the vendor sees it, so its fragments are assembled here: one with
-// many partitions is larger than a datagram. Bounded: keeps the announcements begun last, each up to 60 kB.
-// Not thread-safe.
+// many partitions is larger than a datagram. Bounded: keeps the announcements begun last, each up to 60 kB,
+// and of each what has come. Not thread-safe.
 class DiscoveryFragments
 {
 public:
@@ -31,11 +32,14 @@ private:
         EntityId Writer = 0;
         std::int64_t Sequence = 0;
         std::uint16_t FragmentSize = 0;
-        std::vector<std::uint8_t> Bytes;
-        std::vector<bool> Missing;
+        std::uint32_t SampleSize = 0;
+        std::map<std::uint32_t, std::vector<std::uint8_t>> Parts;  // as they came, by their first fragment
+        std::size_t Bytes = 0;                                     // of the parts
     };
 
     Sample *Find(const GuidPrefix &sender, const Delivery &delivery);
+    static bool IsWhole(const Sample &sample);
+    void Forget(const Sample &sample);
 
     std::deque<Sample> _samples;
 };
