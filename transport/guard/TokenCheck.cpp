@@ -28,6 +28,22 @@ std::optional<Bytes> TakeBytes(RtpsReader &from)
     return from.IsGood() ? std::optional(taken) : std::nullopt;
 }
 
+std::string_view TextOf(Bytes bytes)
+{
+    return {reinterpret_cast<const char *>(bytes.data()), bytes.size()};
+}
+
+// Cyclone DDS 0.10.2 skips the padding behind strings and bytes in the signed data without a check, and then
+// reads behind its end (CVE-2024-10838). Data whose size is a multiple of 4 has all of the padding. A name
+// has no zero but its last byte: the vendors would not agree on which property is meant.
+bool IsBinaryProperty(Bytes name, Bytes value)
+{
+    const std::string_view text = TextOf(name);
+    const std::size_t end = text.find('\0');
+    return end != text.npos && end + 1 == text.size() &&
+           (text.substr(0, end) != "c.pdata" || value.size() % 4 == 0);
+}
+
 // Each property consists of two of those: a name and a value. Calls visit(name, value) for each.
 template <typename Visit>
 bool TakeProperties(RtpsReader &from, const Visit &visit)
@@ -91,22 +107,25 @@ bool IsToken(RtpsReader &from)
 
 bool IsGenericMessage(std::span<const std::uint8_t> payload)
 {
-    return ReadGenericMessage(payload, [](Bytes, Bytes) {});
+    bool isSound = true;
+    return ReadGenericMessage(payload, [&](Bytes name, Bytes value)
+                              { isSound = isSound && IsBinaryProperty(name, value); }) &&
+           isSound;
 }
 
 std::span<const std::uint8_t> BinaryPropertyOf(std::span<const std::uint8_t> payload, std::string_view name)
 {
     Bytes found;
-    const bool isSound = ReadGenericMessage(
-        payload,
-        [&](Bytes of, Bytes value)
-        {
-            const std::string_view text(reinterpret_cast<const char *>(of.data()), of.size());
-            if (found.empty() && text.size() == name.size() + 1 && text.starts_with(name))
-            {
-                found = value;
-            }
-        });
+    const bool isSound =
+        ReadGenericMessage(payload,
+                           [&](Bytes of, Bytes value)
+                           {
+                               const std::string_view text = TextOf(of);
+                               if (found.empty() && text.size() == name.size() + 1 && text.starts_with(name))
+                               {
+                                   found = value;
+                               }
+                           });
     return isSound ? found : Bytes();
 }
 

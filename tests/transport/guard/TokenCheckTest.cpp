@@ -73,6 +73,33 @@ TEST(TokenCheck, LengthsBeyondTheEndAreRefused)
     EXPECT_FALSE(IsGenericMessage(Generic({})));
 }
 
+// The signed data is a list of parameters, which Cyclone DDS reads beyond its end if padding is missing
+// there.
+TEST(TokenCheck, SignedDataWithoutPaddingIsRefused)
+{
+    const auto message = [](const char *name, std::size_t size) {
+        return Generic(Join({U32(1), Text("a"), U32(0), U32(1), Text(name), Octets(size)}));
+    };
+    EXPECT_TRUE(IsGenericMessage(message("c.pdata", 8)));
+    for (const std::size_t size : {5u, 6u, 7u})
+    {
+        EXPECT_FALSE(IsGenericMessage(message("c.pdata", size)));
+        EXPECT_TRUE(IsGenericMessage(message("c.id", size)));
+    }
+}
+
+// Cyclone DDS takes the first for "c.pdata", and Fast DDS for another name.
+TEST(TokenCheck, NamesOfBinaryPropertiesEndAtTheirOnlyZero)
+{
+    const auto isSound = [](const Bytes &name) {
+        return IsGenericMessage(Generic(Join({U32(1), Text("a"), U32(0), U32(1), name, Octets(4)})));
+    };
+    EXPECT_TRUE(isSound(Text("c.pdata")));
+    EXPECT_FALSE(isSound(Join({U32(10), {'c', '.', 'p', 'd', 'a', 't', 'a', 0, 'x', 0, 0, 0}})));
+    EXPECT_FALSE(isSound(Join({U32(7), {'c', '.', 'p', 'd', 'a', 't', 'a', 0}})));
+    EXPECT_FALSE(isSound(U32(0)));
+}
+
 TEST(TokenCheck, OtherEncodingsAreRefused)
 {
     Bytes message = Generic(Join({U32(1), Token()}));
@@ -88,10 +115,10 @@ TEST(TokenCheck, ABinaryPropertyIsFoundByItsName)
         return Bytes(value.begin(), value.end());
     };
     const Bytes token =
-        Join({Text("a"), U32(0), U32(2), Text("c.id"), Octets(5), Text("c.pdata"), Octets(3)});
+        Join({Text("a"), U32(0), U32(2), Text("c.id"), Octets(5), Text("c.pdata"), Octets(4)});
     const Bytes message = Generic(Join({U32(1), token}));
     EXPECT_EQ(found(message, "c.id"), Bytes(5, 1));
-    EXPECT_EQ(found(message, "c.pdata"), Bytes(3, 1));
+    EXPECT_EQ(found(message, "c.pdata"), Bytes(4, 1));
     EXPECT_EQ(found(message, "c.pdat"), Bytes());
     EXPECT_EQ(found(message, "c.perm"), Bytes());
     EXPECT_EQ(found(Bytes(3), "c.id"), Bytes());
