@@ -81,6 +81,24 @@ TEST_F(PayloadPoolTest, ABufferHasRoomForTheVendorsListOfFragments)
     }
 }
 
+// CVE-2025-62799: the last fragment may be shorter than its mark, and begin anywhere.
+TEST_F(PayloadPoolTest, ABufferHasRoomForTheMarkOfAShortLastFragment)
+{
+    for (const std::uint32_t near : {128u, 1024u, 65536u, 100'000u})
+    {
+        for (std::uint32_t size = near - 8; size <= near + 8; ++size)
+        {
+            ASSERT_TRUE(Get(size));
+            for (std::uint32_t fragment = 64; fragment < 128; ++fragment)
+            {
+                const std::uint32_t last = (size - 1) / fragment * fragment;
+                const std::uint32_t endOfMark = (last + 3) / 4 * 4 + 4;
+                ASSERT_LE(endOfMark, Changes.back().serializedPayload.max_size) << size << ' ' << fragment;
+            }
+        }
+    }
+}
+
 TEST_F(PayloadPoolTest, WhatIsGivenBackCountsNoMore)
 {
     for (int i = 0; i < 100'000; ++i)
