@@ -6,9 +6,11 @@ namespace Faults
 {
 
 using namespace RtpsBytes;
+using Rabit::Rtps::HandshakeWriter;
 using Rabit::Rtps::LivelinessWriter;
 using Rabit::Rtps::ParticipantEntity;
 using Rabit::Rtps::ParticipantWriter;
+using Rabit::Rtps::PublicationsWriter;
 
 namespace
 {
@@ -19,6 +21,40 @@ constexpr EntityId LivelinessReader = 0x000200c7;
 Bytes Liveliness(const Bytes &payload)
 {
     return Message(Data, DataBody(1, payload, LivelinessWriter, LivelinessReader), HasData);
+}
+
+Bytes BigEndian32(std::uint32_t value)
+{
+    const Bytes little = U32(value);
+    return Bytes(little.rbegin(), little.rend());
+}
+
+// The request that begins a handshake. `signedData` is what its sender announces: a list of parameters in
+// big-endian form (DDS Security 1.1, 9.3.2.5.1).
+Bytes Handshake(const Bytes &signedData)
+{
+    return Message(Data,
+                   DataBody(1,
+                            Join({{0, 1, 0, 0},
+                                  Bytes(96),
+                                  Text("dds.sec.auth"),
+                                  U32(1),
+                                  Text("DDS:Auth:PKI-DH:1.0+Req"),
+                                  U32(0),
+                                  U32(1),
+                                  Text("c.pdata"),
+                                  U32(static_cast<std::uint32_t>(signedData.size())),
+                                  signedData}),
+                            HandshakeWriter),
+                   HasData);
+}
+
+// The list of properties in it: two, of which `second` is the rest.
+Bytes SignedProperties(const Bytes &second)
+{
+    const Bytes list =
+        Join({BigEndian32(2), BigEndian32(2), {'a', 0, 0, 0}, BigEndian32(2), {'b', 0, 0, 0}, second});
+    return Join({{0, 0x59, 0, static_cast<std::uint8_t>(list.size())}, list});
 }
 
 }  // namespace
@@ -64,6 +100,49 @@ Bytes ParticipantAtPortZero()
         {Header(), Submessage(Data, DataBody(2, ParticipantData(Sender, 0), ParticipantWriter), HasData)});
 }
 
+// The vendor looks for a submessage behind the header.
+Bytes MessageOfAHeaderAlone()
+{
+    return Header();
+}
+
+Bytes WriterOfAnother()
+{
+    return Message(Data, DataBody(1, WriterData(UserWriter, Other), PublicationsWriter), HasData);
+}
+
+Bytes LivelinessOfAnother()
+{
+    const Bytes automatic = {0, 0, 0, 1};
+    return Liveliness(Join({{0, 1, 0, 0}, Bytes(Other.begin(), Other.end()), automatic, U32(0)}));
+}
+
+Bytes GoodbyeOfAnother()
+{
+    constexpr std::uint8_t OnlyInlineQos = 0x03;
+    return Message(Data,
+                   DataBody(3,
+                            Join({Parameter(0x0070, Guid(Other, ParticipantEntity)),
+                                  Parameter(0x0071, {0, 0, 0, 3}),
+                                  {1, 0, 0, 0}}),
+                            ParticipantWriter),
+                   OnlyInlineQos);
+}
+
+Bytes HandshakeWithSignedProperties()
+{
+    return Handshake(
+        Join({SignedProperties(Join({BigEndian32(2), {'c', 0, 0, 0}, BigEndian32(2), {'d', 0, 0, 0}})),
+              {0, 1, 0, 0}}));
+}
+
+// The signed data ends with the name of the second property, whose padding is missing. The vendor subtracts
+// it from what is left, so that 2^64 bytes are left for the value.
+Bytes HandshakeWithUnpaddedProperties()
+{
+    return Handshake(SignedProperties(Join({BigEndian32(2), {'c', 0}})));
+}
+
 std::vector<Fault> CycloneDdsFaults()
 {
     const auto of = [](const char *name, std::vector<Bytes> datagrams)
@@ -75,6 +154,13 @@ std::vector<Fault> CycloneDdsFaults()
         of("issue-1771", {Announcement(), LivelinessOfFourBytes()}),
         of("issue-1772", {Announcement(), ParticipantAtPortZero()}),
         of("issue-1854", {Announcement(), HonestHeartbeat(), HeartbeatFarAhead()}),
+        of("issue-2402", {MessageOfAHeaderAlone()}),
+        of("pull-request-2335",
+           {Announcement(), WriterOfAnother(), LivelinessOfAnother(), GoodbyeOfAnother()}),
+        {.Name = "CVE-2024-10838",
+         .Vendor = "cyclonedds",
+         .Keys = true,
+         .Datagrams = {AnnouncementWithTokens(), HandshakeWithUnpaddedProperties()}},
     };
 }
 

@@ -10,6 +10,7 @@ namespace Faults
 {
 
 using RtpsBytes::Bytes;
+using RtpsBytes::GuidPrefix;
 
 struct Fault
 {
@@ -24,7 +25,7 @@ struct Fault
 
 // The parameters of a participant's announcement, with its builtin endpoints (RTPS 2.3, 9.3.2) and `more`.
 // The vendor's answers go to port 9, which discards them.
-Bytes Announced(std::uint32_t endpoints, const Bytes &more);
+Bytes Announced(std::uint32_t endpoints, const Bytes &more, const GuidPrefix &sender = RtpsBytes::Sender);
 // Those of announcements and liveliness.
 constexpr std::uint32_t BuiltinEndpoints = 0x0c3f;
 
@@ -46,12 +47,32 @@ Bytes SampleWithInlineQosBeyondItsEnd();  // CVE-2024-28231
 Bytes GapOfBillions();                    // CVE-2025-64438
 std::vector<Bytes> RisingHeartbeats();    // CVE-2025-65016
 Bytes Goodbye();                          // CVE-2023-50257
-Bytes PartitionWithoutAnEnd();            // Fast DDS issue 6437
+Bytes PartitionWithoutAnEnd();            // Fast DDS issue 6437, CVE-2026-55063
 Bytes AcknowledgementOfTooManyBits();     // Fast DDS issues 1337 and 1338
 // A heartbeat of numbers that its writer has not reached, after an honest one: Fast DDS issue 3931, Cyclone
 // DDS issue 1854.
 Bytes HonestHeartbeat();
 Bytes HeartbeatFarAhead();
+Bytes GapFromTheAwaitedNumber();             // GHSA-f4hw-9j9g-j8xj
+Bytes GapToTheHighestNumbers();              // GHSA-f4hw-9j9g-j8xj
+Bytes SampleOfTheHighestNumbers();           // GHSA-57rp-jm6r-xjw5
+Bytes HeartbeatBehindThatSample();           // GHSA-57rp-jm6r-xjw5
+Bytes HeartbeatOfTheLastNumber();            // GHSA-6m2p-wjv5-386v
+Bytes WriterOfFragments();                   // sound: announces the writer of the four below
+Bytes FragmentsWhoseTailIsShort();           // CVE-2025-62799
+Bytes FragmentsShorterThanTheVendorsMark();  // CVE-2025-62799
+Bytes FragmentWithInlineQosBeyondItsEnd();   // CVE-2025-65865
+Bytes LastFragmentWithoutItsBytes();         // CVE-2026-22590
+
+// Announcements that Fast DDS reads (FastDdsAnnouncements.cpp).
+Bytes ParticipantAtAnothersAddress();    // CVE-2021-38425
+Bytes RepresentationsThatAreNotThere();  // CVE-2026-49861
+Bytes DomainsThatAreNotThere();          // CVE-2026-49861
+Bytes AddressesThatAreNotThere();        // CVE-2026-53589
+Bytes EmptyPropertiesThatAreNotThere();  // CVE-2026-53590
+Bytes TypesBehindTheirParameter();       // CVE-2026-49863
+Bytes PartitionLongerThanItsList();      // GHSA-8g7x-c9fg-g6mh
+Bytes ReaderWithANestedFilter();         // CVE-2026-22591
 
 // Fast DDS with DDS Security (FastDdsSecurity.cpp). The first is sound.
 Bytes AnnouncementWithTokens();
@@ -61,6 +82,12 @@ Bytes TokenWithAnEndlessValue();           // CVE-2025-62602
 Bytes TokenWithALongValue();               // CVE-2025-64098
 Bytes HandshakeOfCountlessTokens();        // CVE-2025-62603
 Bytes ShortKeyMaterial();                  // Fast DDS issue 6345
+Bytes TokenWithAnEndlessName();            // CVE-2025-62601
+// A whole message under the keys of its sender. The first is sound.
+Bytes ProtectedMessage();
+Bytes ProtectedMessageWithAnEndlessBody();  // CVE-2026-45098
+// One of any number of participants (CVE-2026-45092). In no list: it takes thousands.
+Bytes NumberedParticipant(std::uint32_t number);
 
 // Cyclone DDS (CycloneDds.cpp).
 Bytes SampleThatEndsBeforeItsInlineQos();  // issue 1555
@@ -68,8 +95,16 @@ Bytes LivelinessAsAParameterList();        // issue 1751
 Bytes ParticipantWithoutALease();          // issue 1758
 Bytes LivelinessOfFourBytes();             // issue 1771
 Bytes ParticipantAtPortZero();             // issue 1772
+Bytes MessageOfAHeaderAlone();             // issue 2402
+Bytes WriterOfAnother();                   // pull request 2335
+Bytes LivelinessOfAnother();               // pull request 2335
+Bytes GoodbyeOfAnother();                  // pull request 2335
+// With DDS Security. The first is sound.
+Bytes HandshakeWithSignedProperties();
+Bytes HandshakeWithUnpaddedProperties();  // CVE-2024-10838
 
 std::vector<Fault> FastDdsFaults();
+std::vector<Fault> FastDdsAnnouncementFaults();
 std::vector<Fault> FastDdsSecurityFaults();
 std::vector<Fault> CycloneDdsFaults();
 

@@ -20,6 +20,8 @@ constexpr std::uint16_t TypeInformation = 0x0075;
 constexpr EntityId TypeRequestsWriter = 0x000300c3;
 constexpr EntityId PublicationsReader = 0x000003c7;
 constexpr EntityId PublicationsAnnouncedHere = 0x000003c2;
+// Near the largest number that there is, 2^63 - 1.
+constexpr std::int64_t HighestNumbers = 0x5300000000000001;
 constexpr std::uint16_t PropertyList = 0x0059;
 
 Bytes ParticipantWith(const Bytes &more)
@@ -38,6 +40,13 @@ Bytes WriterWith(const Bytes &more)
         HasData);
 }
 
+// Fragments of the first sample of the writer of WriterOfFragments.
+Bytes Fragments(std::uint16_t size, std::uint32_t whole, std::size_t bytes)
+{
+    const auto count = static_cast<std::uint16_t>((bytes + size - 1) / size);
+    return Message(DataFrag, FragmentBody(1, count, size, whole, bytes));
+}
+
 // A gap of the writer of endpoints, which every participant listens to.
 Bytes Gapped(std::int64_t start, std::int64_t base)
 {
@@ -47,10 +56,10 @@ Bytes Gapped(std::int64_t start, std::int64_t base)
 
 }  // namespace
 
-Bytes Announced(std::uint32_t endpoints, const Bytes &more)
+Bytes Announced(std::uint32_t endpoints, const Bytes &more, const GuidPrefix &sender)
 {
     return List({Parameter(0x0015, {2, 3, 0, 0}), Parameter(0x0016, {1, 15, 0, 0}),
-                 Parameter(0x0050, Guid(Sender, ParticipantEntity)),
+                 Parameter(0x0050, Guid(sender, ParticipantEntity)),
                  Parameter(0x0002, Join({U32(20), U32(0)})),
                  Parameter(0x0032, Join({U32(1), U32(9), Bytes(12), {127, 0, 0, 1}})),
                  Parameter(0x0031, Join({U32(1), U32(9), Bytes(12), {127, 0, 0, 1}})),
@@ -202,6 +211,79 @@ Bytes HeartbeatFarAhead()
     return Message(Heartbeat, HeartbeatBody(1'000'000, 1'000'000, 2, PublicationsWriter));
 }
 
+// The gap begins at the number that the reader awaits, so the vendor steps through all of it.
+Bytes GapFromTheAwaitedNumber()
+{
+    return Gapped(1, 200'000'000);
+}
+
+Bytes GapToTheHighestNumbers()
+{
+    return Gapped(1, HighestNumbers);
+}
+
+Bytes SampleOfTheHighestNumbers()
+{
+    return Message(Data,
+                   DataBody(HighestNumbers,
+                            List({Parameter(0x005a, Guid(Sender, UserWriter)),
+                                  Parameter(0x0005, Text("Pose")), Parameter(0x0007, Text("Uav::Pose"))}),
+                            PublicationsWriter, PublicationsReader),
+                   HasData);
+}
+
+// All numbers up to that sample's are lost, says the writer: the vendor steps through them.
+Bytes HeartbeatBehindThatSample()
+{
+    return Message(Heartbeat, HeartbeatBody(HighestNumbers + 1, HighestNumbers + 2, 1, PublicationsWriter));
+}
+
+// The reader's acknowledgement would name the number behind it, which has no form. The vendor asserts that.
+Bytes HeartbeatOfTheLastNumber()
+{
+    constexpr std::int64_t Last = 0x7ffffffffffffffe;
+    return Message(Heartbeat, HeartbeatBody(Last, Last, 1, PublicationsWriter));
+}
+
+// On the topic that vendor_faults_test.py reads.
+Bytes WriterOfFragments()
+{
+    return Message(
+        Data,
+        DataBody(1,
+                 List({Parameter(0x005a, Guid(Sender, UserWriter)), Parameter(0x0005, Text("State")),
+                       Parameter(0x0007, Text("std_msgs::msg::dds_::String_")),
+                       Parameter(0x001a, Join({U32(2), U32(0), U32(0)}))}),
+                 PublicationsWriter, PublicationsReader),
+        HasData);
+}
+
+// The last fragment has one byte. The vendor writes a mark of four into the place of each.
+Bytes FragmentsWhoseTailIsShort()
+{
+    return Fragments(64, 65, 65);
+}
+
+Bytes FragmentsShorterThanTheVendorsMark()
+{
+    return Fragments(2, 65, 65);
+}
+
+// The only parameter of the inline QoS is 256 bytes long and ends behind the submessage.
+Bytes FragmentWithInlineQosBeyondItsEnd()
+{
+    constexpr std::uint8_t Pad = 0x01;
+    return Join(
+        {Message(DataFrag, Join({FragmentBody(1, 1, 64, 64, 0), U16(0x0029), U16(256)}), HasInlineQos),
+         Submessage(Pad, Join({Bytes(252), {1, 0, 0, 0}, Bytes(64)}))});
+}
+
+// The sample has one fragment of 60000 bytes, says the submessage. It has 8.
+Bytes LastFragmentWithoutItsBytes()
+{
+    return Fragments(60000, 60000, 8);
+}
+
 std::vector<Fault> FastDdsFaults()
 {
     const auto of = [](const char *name, std::vector<Bytes> datagrams)
@@ -221,6 +303,13 @@ std::vector<Fault> FastDdsFaults()
         of("issue-6437", {Announcement(), PartitionWithoutAnEnd()}),
         of("issue-1337", {Announcement(), AcknowledgementOfTooManyBits()}),
         of("issue-3931", {Announcement(), HonestHeartbeat(), HeartbeatFarAhead()}),
+        of("GHSA-f4hw-9j9g-j8xj", {Announcement(), GapFromTheAwaitedNumber(), GapToTheHighestNumbers()}),
+        of("GHSA-57rp-jm6r-xjw5", {Announcement(), SampleOfTheHighestNumbers(), HeartbeatBehindThatSample()}),
+        of("GHSA-6m2p-wjv5-386v", {Announcement(), HeartbeatOfTheLastNumber()}),
+        of("CVE-2025-62799", {Announcement(), WriterOfFragments(), FragmentsWhoseTailIsShort(),
+                              FragmentsShorterThanTheVendorsMark()}),
+        of("CVE-2025-65865", {Announcement(), WriterOfFragments(), FragmentWithInlineQosBeyondItsEnd()}),
+        of("CVE-2026-22590", {Announcement(), WriterOfFragments(), LastFragmentWithoutItsBytes()}),
     };
 }
 

@@ -1,4 +1,6 @@
 // Published faults of Fast DDS in what participants with DDS Security read before a peer is authenticated.
+#include <algorithm>
+
 #include "faults/Datagrams.h"
 #include "guard/DeliveryCheck.h"
 
@@ -23,17 +25,20 @@ constexpr const char *PermissionsClass = "DDS:Access:Permissions:1.0";
 // Eight million: the vendor can allocate for so many of anything, and does.
 constexpr std::uint32_t Countless = 0x800000;
 
-// An announcement of a participant with the two tokens that authentication begins with.
-Bytes ParticipantWith(const Bytes &identity, const Bytes &permissions)
+// The content of an announcement of a participant with the two tokens that authentication begins with.
+Bytes AnnouncedWith(const Bytes &identity, const Bytes &permissions, const GuidPrefix &sender = Sender)
 {
     // The two through which participants authenticate each other.
     constexpr std::uint32_t AuthenticationEndpoints = 0x0fc00000;
     // Both sides must protect the same. Participants announce that in plain, so anybody can copy it.
     const Bytes tokens = Join({Parameter(IdentityToken, identity), Parameter(PermissionsToken, permissions),
                                Parameter(SecurityInfo, Join({U32(0x80000007), U32(0x80000006)}))});
-    return Message(
-        Data, DataBody(1, Announced(BuiltinEndpoints | AuthenticationEndpoints, tokens), ParticipantWriter),
-        HasData);
+    return Announced(BuiltinEndpoints | AuthenticationEndpoints, tokens, sender);
+}
+
+Bytes ParticipantWith(const Bytes &identity, const Bytes &permissions)
+{
+    return Message(Data, DataBody(1, AnnouncedWith(identity, permissions), ParticipantWriter), HasData);
 }
 
 Bytes Token(const char *kind, std::uint32_t properties = 0, std::uint32_t binaryProperties = 0)
@@ -44,6 +49,21 @@ Bytes Token(const char *kind, std::uint32_t properties = 0, std::uint32_t binary
 Bytes TokenWithValue(std::uint32_t size)
 {
     return Join({Text(IdentityClass), U32(0), U32(1), Text("c.id"), U32(size), Bytes(8, 'x')});
+}
+
+// A message that is protected as a whole (9.5.2.3): a prefix, encrypted content that says how long it is, and
+// a postfix with the common tag alone.
+Bytes Protected(std::uint32_t length)
+{
+    constexpr std::uint8_t MessagePrefix = 0x33;
+    constexpr std::uint8_t SecureBody = 0x30;
+    constexpr std::uint8_t MessagePostfix = 0x34;
+    const Bytes content =
+        Join({{static_cast<std::uint8_t>(length >> 24), static_cast<std::uint8_t>(length >> 16),
+               static_cast<std::uint8_t>(length >> 8), static_cast<std::uint8_t>(length)},
+              Bytes(16, 'x')});
+    return Join({Header(), Submessage(MessagePrefix, Bytes(20, 1)), Submessage(SecureBody, content),
+                 Submessage(MessagePostfix, Bytes(20))});
 }
 
 // A message between participants: who it is from and for, its class, and its tokens.
@@ -99,6 +119,36 @@ Bytes ShortKeyMaterial()
                    SecureVolatileWriter);
 }
 
+// The name of the only binary property is nearly 4 GB long: rounded up to a multiple of 4, it is 0.
+Bytes TokenWithAnEndlessName()
+{
+    return ParticipantWith(Join({Text(IdentityClass), U32(0), U32(1), U32(0xfffffffd), Bytes(8, 'x')}),
+                           Token(PermissionsClass));
+}
+
+Bytes ProtectedMessage()
+{
+    return Protected(16);
+}
+
+// The encrypted content says that it is nearly 4 GB long. The vendor adds to that.
+Bytes ProtectedMessageWithAnEndlessBody()
+{
+    return Protected(0xfffffffc);
+}
+
+Bytes NumberedParticipant(std::uint32_t number)
+{
+    GuidPrefix prefix = Sender;
+    const Bytes digits = U32(number);
+    std::copy(digits.begin(), digits.end(), prefix.begin() + 4);
+    return Join({Header(prefix),
+                 Submessage(Data,
+                            DataBody(1, AnnouncedWith(Token(IdentityClass), Token(PermissionsClass), prefix),
+                                     ParticipantWriter),
+                            HasData)});
+}
+
 std::vector<Fault> FastDdsSecurityFaults()
 {
     const auto of = [](const char *name, std::vector<Bytes> datagrams)
@@ -110,6 +160,8 @@ std::vector<Fault> FastDdsSecurityFaults()
         of("CVE-2025-64098", {TokenWithALongValue()}),
         of("CVE-2025-62603", {AnnouncementWithTokens(), HandshakeOfCountlessTokens()}),
         of("issue-6345", {AnnouncementWithTokens(), ShortKeyMaterial()}),
+        of("CVE-2025-62601", {TokenWithAnEndlessName()}),
+        of("CVE-2026-45098", {AnnouncementWithTokens(), ProtectedMessageWithAnEndlessBody()}),
     };
 }
 

@@ -19,21 +19,22 @@ using RtpsBytes::Gate;
 // Modes with DDS Security, of a governance like ours and of any other.
 constexpr std::array WithKeys = {RtpsGuard::Mode::Protected, RtpsGuard::Mode::Secured};
 
+// True if something got through that has the bytes.
+bool Delivers(const Gate &guard, const Bytes &bytes)
+{
+    return std::any_of(
+        guard.Handed.begin(), guard.Handed.end(),
+        [&](const Bytes &message)
+        { return std::search(message.begin(), message.end(), bytes.begin(), bytes.end()) != message.end(); });
+}
+
 // The sender has announced itself.
 class FastDdsFaults : public testing::Test
 {
 protected:
     FastDdsFaults() { EXPECT_TRUE(Guard.Admit(Announcement())); }
 
-    // True if something gets through that has the bytes.
-    bool Delivers(const Bytes &bytes) const
-    {
-        return std::any_of(Guard.Handed.begin(), Guard.Handed.end(),
-                           [&](const Bytes &message) {
-                               return std::search(message.begin(), message.end(), bytes.begin(),
-                                                  bytes.end()) != message.end();
-                           });
-    }
+    bool Delivers(const Bytes &bytes) const { return ::Delivers(Guard, bytes); }
 
     Gate Guard;
 };
@@ -44,6 +45,13 @@ class CycloneDdsFaults : public FastDdsFaults
 
 constexpr std::uint16_t PropertyList = 0x0059;
 constexpr std::uint16_t TypeInformation = 0x0075;
+
+// The first number behind a gap that is the only submessage of a message.
+std::int64_t BaseOfGap(const Bytes &message)
+{
+    constexpr std::size_t BaseAt = 20 + 4 + 16;
+    return Rabit::Rtps::RtpsReader(std::span(message).subspan(BaseAt), true).Sequence();
+}
 
 TEST_F(FastDdsFaults, Cve2023_39946_PropertiesAreBlanked)
 {
@@ -171,7 +179,7 @@ TEST(FastDdsFaultsWithKeys, Cve2023_50257_AGoodbyeFromAnotherAddressIsStoppedHow
     }
 }
 
-TEST_F(FastDdsFaults, Issue6437_APartitionWithoutAnEndIsStopped)
+TEST_F(FastDdsFaults, Issue6437_Cve2026_55063_APartitionWithoutAnEndIsStopped)
 {
     EXPECT_TRUE(Guard.Stops(PartitionWithoutAnEnd()));
 }
@@ -185,6 +193,185 @@ TEST_F(FastDdsFaults, Issue3931_AHeartbeatFarAheadIsStopped)
 {
     EXPECT_TRUE(Guard.Admit(HonestHeartbeat()));
     EXPECT_TRUE(Guard.Stops(HeartbeatFarAhead()));
+}
+
+TEST_F(FastDdsFaults, GhsaF4hw_AGapFromTheAwaitedNumberIsStopped)
+{
+    EXPECT_TRUE(Guard.Stops(GapFromTheAwaitedNumber()));
+    EXPECT_TRUE(Guard.Stops(GapToTheHighestNumbers()));
+}
+
+TEST(FastDdsFaultsWithKeys, GhsaF4hw_AGapFromTheAwaitedNumberIsNarrowedOrStopped)
+{
+    Gate guard(RtpsGuard::Mode::Secured);
+    ASSERT_TRUE(guard.Admit(GapFromTheAwaitedNumber()));
+    ASSERT_EQ(guard.Handed.size(), 1u);
+    EXPECT_EQ(BaseOfGap(guard.Handed.front()),
+              1 + Rabit::Rtps::WalkBudget::Burst + Rabit::Rtps::WalkBudget::Free);
+    EXPECT_TRUE(guard.Stops(GapToTheHighestNumbers()));
+}
+
+TEST_F(FastDdsFaults, Ghsa57rp_TheHighestNumbersAreStopped)
+{
+    EXPECT_TRUE(Guard.Stops(SampleOfTheHighestNumbers()));
+    EXPECT_TRUE(Guard.Stops(HeartbeatBehindThatSample()));
+}
+
+TEST_F(FastDdsFaults, Ghsa6m2p_AHeartbeatOfTheLastNumberIsStopped)
+{
+    EXPECT_TRUE(Guard.Stops(HeartbeatOfTheLastNumber()));
+}
+
+TEST(FastDdsFaultsWithKeys, Ghsa57rp_Ghsa6m2p_TheHighestNumbersAreStopped)
+{
+    for (const auto mode : WithKeys)
+    {
+        EXPECT_TRUE(Gate(mode).Stops(SampleOfTheHighestNumbers()));
+        EXPECT_TRUE(Gate(mode).Stops(HeartbeatBehindThatSample()));
+        EXPECT_TRUE(Gate(mode).Stops(HeartbeatOfTheLastNumber()));
+    }
+}
+
+// Honest samples have any size. The buffers of nodes have room for the mark (PayloadPoolTest).
+TEST_F(FastDdsFaults, Cve2025_62799_FragmentsWhoseTailIsShortPass)
+{
+    EXPECT_TRUE(Guard.Admit(WriterOfFragments()));
+    EXPECT_TRUE(Guard.Passes(FragmentsWhoseTailIsShort()));
+}
+
+TEST_F(FastDdsFaults, Cve2025_62799_FragmentsShorterThanTheVendorsMarkAreStopped)
+{
+    EXPECT_TRUE(Guard.Admit(WriterOfFragments()));
+    EXPECT_TRUE(Guard.Stops(FragmentsShorterThanTheVendorsMark()));
+}
+
+TEST_F(FastDdsFaults, Cve2025_65865_InlineQosBeyondTheEndOfAFragmentIsStopped)
+{
+    EXPECT_TRUE(Guard.Admit(WriterOfFragments()));
+    EXPECT_TRUE(Guard.Stops(FragmentWithInlineQosBeyondItsEnd()));
+}
+
+TEST_F(FastDdsFaults, Cve2026_22590_ALastFragmentWithoutItsBytesIsStopped)
+{
+    EXPECT_TRUE(Guard.Admit(WriterOfFragments()));
+    EXPECT_TRUE(Guard.Stops(LastFragmentWithoutItsBytes()));
+}
+
+// No datagram tells whose address that is, so the announcement passes.
+TEST(FastDdsAnnouncementFaults, Cve2021_38425_AParticipantAtAnothersAddressHasAShortLease)
+{
+    const auto lease = [](std::uint32_t seconds) {
+        return RtpsBytes::Parameter(0x0002, RtpsBytes::Join({RtpsBytes::U32(seconds), RtpsBytes::U32(0)}));
+    };
+    Gate guard;
+    EXPECT_TRUE(guard.Admit(ParticipantAtAnothersAddress()));
+    EXPECT_TRUE(Delivers(guard, lease(300)));
+    EXPECT_FALSE(Delivers(guard, lease(86'400)));
+}
+
+TEST(FastDdsAnnouncementFaults, Cve2021_38425_AnothersAddressIsSentNoMoreThanCameFromItsParticipants)
+{
+    using Rabit::Rtps::Ledger;
+    constexpr std::size_t Size = 100;
+    constexpr std::size_t Times = 1000;
+    constexpr std::size_t IpAndUdp = 28;
+    const Rabit::Rtps::Place victim{.Host = {10, 0, 0, 99}, .Port = 9};
+    const Rabit::Rtps::HostAddress forger = {10, 0, 0, 66};
+    const RtpsGuard::TimePoint now{std::chrono::hours(1)};
+    RtpsGuard guard(RtpsGuard::Mode::Full, std::chrono::seconds(10));
+    Bytes datagram = ParticipantAtAnothersAddress();
+    ASSERT_TRUE(guard.Admit(datagram, forger, now, [](std::span<std::uint8_t>) {}));
+    std::size_t sent = 0;
+    for (std::size_t i = 0; i < Times; ++i)
+    {
+        sent += guard.MayGo(victim, Size, now) == Ledger::Going::Refused ? 0 : Size + IpAndUdp;
+    }
+    EXPECT_LE(sent, datagram.size() + IpAndUdp + std::size_t{Ledger::Allowance});
+}
+
+TEST_F(FastDdsFaults, Cve2026_49861_RepresentationsThatAreNotThereAreStopped)
+{
+    EXPECT_TRUE(Guard.Stops(RepresentationsThatAreNotThere()));
+}
+
+// The guard blanks parameters that nodes do not use.
+TEST_F(FastDdsFaults, Cve2026_49861_DomainsThatAreNotThereAreBlanked)
+{
+    constexpr std::uint16_t DataSharing = 0x8006;
+    EXPECT_TRUE(Guard.Admit(DomainsThatAreNotThere()));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+    EXPECT_FALSE(Delivers(RtpsBytes::U16(DataSharing)));
+}
+
+TEST_F(FastDdsFaults, Cve2026_53589_AddressesThatAreNotThereAreBlanked)
+{
+    constexpr std::uint16_t EndpointSettings = 0x8010;
+    EXPECT_TRUE(Guard.Admit(AddressesThatAreNotThere()));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+    EXPECT_FALSE(Delivers(RtpsBytes::U16(EndpointSettings)));
+}
+
+TEST_F(FastDdsFaults, Cve2026_53590_PropertiesAreBlanked)
+{
+    EXPECT_TRUE(Guard.Admit(EmptyPropertiesThatAreNotThere()));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+    EXPECT_FALSE(Delivers(RtpsBytes::U16(PropertyList)));
+}
+
+TEST_F(FastDdsFaults, Cve2026_49863_DescriptionsOfTypesAreBlanked)
+{
+    EXPECT_TRUE(Guard.Admit(TypesBehindTheirParameter()));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+    EXPECT_FALSE(Delivers(RtpsBytes::U16(TypeInformation)));
+}
+
+TEST_F(FastDdsFaults, Ghsa8g7x_APartitionLongerThanItsListIsStopped)
+{
+    EXPECT_TRUE(Guard.Stops(PartitionLongerThanItsList()));
+}
+
+TEST_F(FastDdsFaults, Cve2026_22591_FiltersAreBlanked)
+{
+    constexpr std::uint16_t ContentFilter = 0x0035;
+    EXPECT_TRUE(Guard.Admit(ReaderWithANestedFilter()));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+    EXPECT_FALSE(Delivers(RtpsBytes::U16(ContentFilter)));
+}
+
+TEST(FastDdsFaultsWithKeys, Cve2025_62601_AnEndlessNameIsStopped)
+{
+    for (const auto mode : WithKeys)
+    {
+        EXPECT_TRUE(Gate(mode).Stops(TokenWithAnEndlessName()));
+    }
+}
+
+TEST(FastDdsFaultsWithKeys, Cve2026_45098_AnEndlessBodyIsStopped)
+{
+    for (const auto mode : WithKeys)
+    {
+        EXPECT_TRUE(Gate(mode).Stops(ProtectedMessageWithAnEndlessBody()));
+    }
+    EXPECT_TRUE(Gate(RtpsGuard::Mode::Secured).Passes(ProtectedMessage()));
+}
+
+// They are all one host's, within a second.
+TEST(FastDdsFaultsWithKeys, Cve2026_45092_CountlessParticipantsAreStopped)
+{
+    constexpr std::uint32_t Sent = 3000;
+    constexpr std::size_t Most = 1024;
+    for (const auto mode : WithKeys)
+    {
+        Gate guard(mode);
+        std::size_t delivered = 0;
+        for (std::uint32_t number = 0; number < Sent; ++number)
+        {
+            guard.Admit(NumberedParticipant(number));
+            delivered += guard.Handed.size();
+        }
+        EXPECT_GT(delivered, 0u);
+        EXPECT_LE(delivered, Most);
+    }
 }
 
 TEST(FastDdsFaultsWithKeys, Cve2025_62599_CountlessPropertiesAreStopped)
@@ -270,6 +457,32 @@ TEST_F(CycloneDdsFaults, Issue1854_AHeartbeatFarAheadIsStopped)
 {
     EXPECT_TRUE(Guard.Admit(HonestHeartbeat()));
     EXPECT_TRUE(Guard.Stops(HeartbeatFarAhead()));
+}
+
+TEST_F(CycloneDdsFaults, Issue2402_AMessageOfAHeaderAloneIsIgnored)
+{
+    for (const auto mode : {RtpsGuard::Mode::Full, RtpsGuard::Mode::Secured, RtpsGuard::Mode::Protected})
+    {
+        Gate guard(mode);
+        EXPECT_TRUE(guard.Admit(MessageOfAHeaderAlone()));
+        EXPECT_TRUE(guard.Handed.empty());
+    }
+}
+
+TEST_F(CycloneDdsFaults, PullRequest2335_WhatConcernsAnotherParticipantIsStopped)
+{
+    EXPECT_TRUE(Guard.Stops(WriterOfAnother()));
+    EXPECT_TRUE(Guard.Stops(LivelinessOfAnother()));
+    EXPECT_TRUE(Guard.Stops(GoodbyeOfAnother()));
+}
+
+TEST(CycloneDdsFaultsWithKeys, Cve2024_10838_SignedPropertiesWithoutPaddingAreStopped)
+{
+    for (const auto mode : WithKeys)
+    {
+        EXPECT_TRUE(Gate(mode).Passes(HandshakeWithSignedProperties()));
+        EXPECT_TRUE(Gate(mode).Stops(HandshakeWithUnpaddedProperties()));
+    }
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 int main()
 {
-    for (const auto &all :
-         {Faults::FastDdsFaults(), Faults::FastDdsSecurityFaults(), Faults::CycloneDdsFaults()})
+    for (const auto &all : {Faults::FastDdsFaults(), Faults::FastDdsAnnouncementFaults(),
+                            Faults::FastDdsSecurityFaults(), Faults::CycloneDdsFaults()})
     {
         for (const Faults::Fault &fault : all)
         {

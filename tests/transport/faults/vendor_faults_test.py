@@ -218,7 +218,8 @@ def main():
     harness.enter_namespace_or_skip()
     listed = subprocess.run([datagrams], check=True, capture_output=True, text=True).stdout
     faults = [Fault(line) for line in listed.splitlines()]
-    installed = [fault for fault in faults if fault.vendor in transports]
+    # Nothing leaves the guard out of a session over Cyclone DDS with keys.
+    installed = [fault for fault in faults if fault.vendor in transports and not (fault.keys and fault.vendor == "cyclonedds")]
     # Nodes get the faults of both vendors: the guard is the same.
     guarded = [Guarded(faults, transport, keys, 60 + 2 * i + keys, programs)
                for i, transport in enumerate(transports) for keys in (False, True)]
