@@ -17,7 +17,7 @@ extern "C" int __sanitizer_install_malloc_and_free_hooks(void (*allocated)(const
 namespace
 {
 
-// What an input costs beyond its bytes: a target makes the objects that parse anew for each one.
+// The costs of an input beyond its bytes: a target makes the objects that parse anew for each one.
 constexpr std::uint64_t FreeBytes = 500'000;
 constexpr std::uint64_t FreeAllocations = 5'000;
 constexpr double FreeSeconds = 0.02;

@@ -20,7 +20,7 @@
 namespace Opponent
 {
 
-// What the vendors do with what the guard admits, as far as it costs something. Both step through
+// A vendor, as far as the things that the guard admits cost it something. Both vendors step through
 // each number that a writer says is absent, and keep every announcement until it is disposed of.
 class Vendor
 {

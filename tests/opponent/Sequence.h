@@ -33,7 +33,7 @@ struct Sent
     std::size_t From = 0;  // which of the opponent's own addresses
 };
 
-// What the opponent has heard of the others on the network.
+// The names, numbers and datagrams of others that the opponent has heard.
 class Hearing
 {
 public:

@@ -18,7 +18,7 @@ namespace
 using namespace std::chrono_literals;
 using namespace Opponent;
 
-// What the fleet spends and does, while the opponent plays or is silent.
+// The costs and times of the fleet, while the opponent plays or is silent.
 struct Outcome
 {
     std::uint64_t In = 0;   // bytes of the opponent
