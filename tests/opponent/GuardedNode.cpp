@@ -167,8 +167,7 @@ void GuardedNode::FromVendor(const Bytes &message)
 {
     _guard.Sending(message);
     const auto to = Dds.PlaceOf(Rabit::DestinationOf(message));
-    if (!_meeting.Sending(message, _now) &&
-        (!to || _guard.MayGo(*to, message.size(), _now) != Ledger::Going::Refused))
+    if (!_meeting.Sending(message, _now) && (!to || _guard.MayGo(*to, message.size(), _addresses, _now)))
     {
         Send(message);
     }
@@ -244,9 +243,8 @@ void GuardedNode::Step(TimePoint now)
     {
         for (const Rabit::Rtps::Place &place : Dds.Readers())
         {
-            SentBytes += _guard.MayGo(place, SampleSize, now) != Ledger::Going::Refused
-                             ? SampleSize + CardExchange::IpAndUdp
-                             : 0;
+            SentBytes +=
+                _guard.MayGo(place, SampleSize, _addresses, now) ? SampleSize + CardExchange::IpAndUdp : 0;
         }
     }
     while (_meeting.LocalDue() && *_meeting.LocalDue() <= now)

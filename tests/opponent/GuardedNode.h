@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "Sequence.h"
@@ -95,6 +96,7 @@ private:
     TimePoint _now{};
     Rabit::Rtps::Meeting _meeting;
     Rabit::Rtps::RtpsGuard _guard;
+    Rabit::HardwareAddresses _addresses{[] { return std::string(); }};  // the kernel awaits none
     std::int64_t _beats = 0;
     std::optional<TimePoint> _begun;
     std::uint64_t _announcements = 0;

@@ -95,7 +95,7 @@ public:
     {
         Refused,
         // To a stranger. Hold it back while the kernel asks for the host's hardware address: it keeps such
-        // datagrams at the expense of the socket's buffer, and 130 of them block the socket for 3 s.
+        // datagrams at the expense of the socket's buffer. A full buffer blocks the socket for some seconds.
         AsToStranger,
         Freely
     };

@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/HardwareAddresses.h"
 #include "common/Ledger.h"
 #include "common/RecentGoodbyes.h"
 #include "guard/AnnouncementReplies.h"
@@ -107,10 +108,13 @@ public:
 
     // Records a datagram that we send.
     void Sending(std::span<const std::uint8_t> datagram);
-    // Whether a datagram may go to that address, which is not a group's (Ledger::MayGo).
-    Ledger::Going MayGo(const Place &to, std::size_t bytes, TimePoint now)
+    // True if a datagram may go to that address, which is not a group's (Ledger::MayGo). To a stranger it
+    // does not go while the kernel awaits the hardware address, but for one a second.
+    bool MayGo(const Place &to, std::size_t bytes, HardwareAddresses &addresses, TimePoint now)
     {
-        return _mode == Mode::Full ? _ledger->MayGo(to, bytes, now) : Ledger::Going::Freely;
+        const auto going = _mode == Mode::Full ? _ledger->MayGo(to, bytes, now) : Ledger::Going::Freely;
+        return going == Ledger::Going::Freely ||
+               (going == Ledger::Going::AsToStranger && addresses.MayAsk(to.Host, now));
     }
 
     // True, once, if a peer of whom a datagram was admitted waits for our announcement.

@@ -110,7 +110,8 @@ bool CardReplay::Put(const GuidPrefix &peer, std::span<const std::uint8_t> card,
     return true;
 }
 
-// An implementation that acknowledges nothing knows none of them.
+// If the implementation acknowledges nothing, announcements of endpoints that are gone are dropped at the
+// limit: it knows none of those endpoints.
 void CardReplay::RemoveMissing(Stream &stream, EntityId writer, const GuidPrefix &peer,
                                const std::set<EntityId> &present)
 {

@@ -122,9 +122,9 @@ TEST_F(PeerObserverTest, AParticipantWithACardIsNotAnnouncedWithoutOne)
 TEST_F(PeerObserverTest, ACardIsBelievedAfterItHasEndedAnAnnouncementWithoutOne)
 {
     ASSERT_EQ(Admit(ParticipantMessage()), 1u);
+    Bytes early = AnnouncementWithCard();
     EXPECT_FALSE(Guard.Admit(
-        *std::make_unique<Bytes>(AnnouncementWithCard()), SenderHost, Now, [](auto) {},
-        RtpsGuard::Origin::Card));
+        early, SenderHost, Now, [](auto) {}, RtpsGuard::Origin::Card));
     EXPECT_EQ(Admit(Goodbye(2), RtpsGuard::Origin::Card), 1u);
     EXPECT_EQ(Admit(AnnouncementWithCard(), RtpsGuard::Origin::Card), 1u);
 }

@@ -342,20 +342,18 @@ TEST_F(Exchanging, ANewcomerWhoseCardIsCompleteHearsOfANodeThatWasSilent)
 // Somebody repeats what was heard before, again and again.
 TEST_F(Exchanging, AnOlderSummaryDoesNotReplaceTheOneThatIsWanted)
 {
-    const auto summaryOf = [](const std::vector<std::uint8_t> &card) { return SummaryOf(card); };
     const std::vector<std::uint8_t> older(100, 1);
     const std::vector<std::uint8_t> newer(200, 2);
-    Receive({.From = Name(2), .Summary = summaryOf(newer)});
-    std::optional<CardExchange::Card> card;
+    Receive({.From = Name(2), .Summary = SummaryOf(newer)});
     for (int i = 0; i < 100; ++i)
     {
-        Receive({.From = Name(2), .Summary = summaryOf(older)}, 10s);
+        Receive({.From = Name(2), .Summary = SummaryOf(older)}, 10s);
         Now += 10ms;
     }
-    CardMessage part{.From = Name(2), .Summary = summaryOf(newer), .HasPart = true};
+    CardMessage part{.From = Name(2), .Summary = SummaryOf(newer), .HasPart = true};
     part.SentAt = QueueingDelay::Stamp(Now);
     part.Bytes = newer;
-    card = Exchange.Received(part, Now);
+    const auto card = Exchange.Received(part, Now);
     ASSERT_TRUE(card.has_value());
     EXPECT_EQ(card->Packed, newer);
 }

@@ -285,14 +285,8 @@ bool VendorDomain::MayGo(void *self, const RabitCyclonePlace *place, std::size_t
     auto &domain = *static_cast<VendorDomain *>(self);
     Rtps::Place to{.Host = {}, .Port = static_cast<std::uint16_t>(place->port)};
     std::copy_n(place->address, to.Host.size(), to.Host.begin());
-    if (IsGroup(to.Host))
-    {
-        return true;
-    }
-    const auto now = std::chrono::steady_clock::now();
-    const auto going = domain._guard.MayGo(to, size, now);
-    return going == Rtps::Ledger::Going::Freely ||
-           (going == Rtps::Ledger::Going::AsToStranger && domain._addresses.MayAsk(to.Host, now));
+    return IsGroup(to.Host) ||
+           domain._guard.MayGo(to, size, domain._addresses, std::chrono::steady_clock::now());
 }
 
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)

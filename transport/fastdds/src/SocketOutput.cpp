@@ -96,15 +96,8 @@ std::size_t SocketOutput::DatagramsTo(const rtps::SenderResource *socket, const 
 
 bool SocketOutput::MayGo(const rtps::Locator_t &destination, std::size_t bytes, TimePoint now)
 {
-    if (IsGroup(destination))
-    {
-        return true;
-    }
-    const HostAddress host = HostOf(destination);
-    const Place place{.Host = host, .Port = static_cast<std::uint16_t>(destination.port)};
-    const auto going = _guard.MayGo(place, bytes, now);
-    return going == Ledger::Going::Freely ||
-           (going == Ledger::Going::AsToStranger && _addresses.MayAsk(host, now));
+    const Place place{.Host = HostOf(destination), .Port = static_cast<std::uint16_t>(destination.port)};
+    return IsGroup(destination) || _guard.MayGo(place, bytes, _addresses, now);
 }
 
 bool SocketOutput::Send(rtps::SenderResource *socket, const Destinations &destinations,
