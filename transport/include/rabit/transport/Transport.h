@@ -398,8 +398,9 @@ public:
     virtual std::vector<std::string> RemoteTopics() const { return {}; }
     // The parts of the network that the settings ask for and that are missing now: interfaces that do not
     // exist or have no carrier or address, peers' names without an address. Also the reason why the network
-    // could not be joined. None is Impossible, and none is logged: the holder of the session reports them.
-    // Empty if all is well.
+    // could not be joined. Besides, the hosts whose unknown programs this session has refused something for
+    // ten seconds (setting `stranger`, the address as the entry). None is Impossible, and none is logged: the
+    // holder of the session reports them. Empty if all is well. Any thread.
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
     // Lets the holder decide when discovery sends. Null: this session does not wait for turns. Lives as long
     // as the session. Any thread.
