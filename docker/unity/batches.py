@@ -6,7 +6,7 @@ LIST has one line for each source: its target, its folder in the source tree, an
 CMake commands that give the sources their UNITY_GROUP, each group with MOST sources at most.
 
 What is in an anonymous namespace, and a name that is `static`, is a file's own; two files of one unit must not have the
-same. So sources that define a name alike are put into different groups, those that use a name which another one
+same in one namespace. So sources that define a name alike are put into different groups, those that use a name which another one
 defines as a macro, and those that have the names of different namespaces by `using`. A source that goes with none is compiled alone. The sources are read roughly, as their layout by
 clang-format allows; where that does not do, the compiler says "redefinition", and SKIP_UNITY_BUILD_INCLUSION on the
 source helps.
@@ -33,10 +33,13 @@ class Source:
         text = IGNORED.sub(lambda found: " " + "\n" * found.group().count("\n"), text)
         self.macros = set(re.findall(r"^[ \t]*#[ \t]*define[ \t]+(\w+)", text, re.M))
         self.mentioned = set(IDENTIFIER.findall(text))
-        self.directives = set(re.findall(r"\busing\s+namespace\s+([\w:]+)", text))
+        # Those of a function, which are indented, end with it.
+        self.directives = set(re.findall(r"^(?:namespace\b[^\n]*)?using\s+namespace\s+([\w:]+)", text, re.M))
         # The names that `using` brings in: last part to full name.
         self.brought = dict((name.split("::")[-1], name) for name in re.findall(r"\busing\s+([\w:]+::\w+)\s*;", text))
-        self.defined = set()
+        self.defined = set()  # names with their namespaces; one without a name does not count
+        self.names = set()  # the same names alone
+        self.namespaces = []  # where the reader is
         self.read(TOKEN.findall(DIRECTIVE.sub(" ", text)))
 
     def read(self, tokens):
@@ -47,11 +50,13 @@ class Source:
             token = tokens[at]
             if token == "{":
                 if "namespace" in statement or statement[:1] == ["extern"] and len(statement) == 1:
+                    self.namespaces.append("".join(word for word in statement if word not in ("namespace", "inline", "extern")))
                     statement = []
                 else:
                     at, within = self.skip(tokens, at)
                     if statement[:1] == ["enum"] and statement[1:2] not in (["class"], ["struct"]):
-                        self.defined.update(re.findall(r"(?:^|,)\s*([A-Za-z_]\w*)", " ".join(within)))
+                        for name in re.findall(r"(?:^|,)\s*([A-Za-z_]\w*)", " ".join(within)):
+                            self.add(name)
                     statement.append("{}")
                     # A function ends here; a type and a value end with the semicolon.
                     if self.ends_with_body(statement):
@@ -61,10 +66,15 @@ class Source:
                 self.define(statement)
                 statement = []
             elif token == "}":
+                del self.namespaces[-1:]
                 statement = []
             else:
                 statement.append(token)
             at += 1
+
+    def add(self, name):
+        self.names.add(name)
+        self.defined.add("::".join([one for one in self.namespaces if one] + [name]))
 
     @staticmethod
     def skip(tokens, at):
@@ -85,16 +95,16 @@ class Source:
         if not words or words[0] == ",":  # the rest of a constructor's initializers
             return
         if GTEST.match(words[0]) and words[1:2] == ["("]:
-            self.defined.add("_".join(word for word in words[2:words.index(")")] if word != ",") + "_Test")
+            self.add("_".join(word for word in words[2:words.index(")")] if word != ",") + "_Test")
         elif words[0] == "using":
             if "namespace" not in words and "=" in words:
-                self.defined.add(words[1])
+                self.add(words[1])
         elif words[0] in KINDS:
             name = next((word for word in words[1:] if IDENTIFIER.fullmatch(word) and word not in KINDS), None)
             if name and words[-1] != name:  # not a mere declaration
-                self.defined.add(name)
+                self.add(name)
         elif words[0] == "typedef":
-            self.defined.add(words[-1])
+            self.add(words[-1])
         else:
             self.define_by_declarator(words)
 
@@ -107,17 +117,17 @@ class Source:
                 # A word with no word before it is a macro; a word after :: is a member that was declared
                 # elsewhere.
                 if at >= 2 and IDENTIFIER.fullmatch(words[at - 1]) and words[at - 2] != "::":
-                    self.defined.add(words[at - 1])
+                    self.add(words[at - 1])
                 return
         if len(words) >= 2 and IDENTIFIER.fullmatch(words[-1]) and words[-2] != "::":
-            self.defined.add(words[-1])
+            self.add(words[-1])
 
     def goes_with(self, other):
         if self.directives and other.directives and self.directives != other.directives:
             return False
         if any(other.brought.get(name, full) != full for name, full in self.brought.items()):
             return False
-        if self.defined & set(other.brought) or set(self.brought) & other.defined:
+        if self.names & set(other.brought) or set(self.brought) & other.names:
             return False
         return not (self.defined & other.defined or self.macros & other.mentioned or other.macros & self.mentioned)
 

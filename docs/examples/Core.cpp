@@ -4,16 +4,20 @@
 #include <rabit/ManagerStats.h>
 #include <rabit/ManagerStatusMessage.h>
 #include <rabit/ManualClock.h>
+#include <rabit/RabitBoost.h>
 #include <rabit/RabitClock.h>
 #include <rabit/RabitLog.h>
 #include <rabit/RabitManager.h>
 #include <rabit/RabitManagerTrace.h>
+#include <rabit/RabitMessageQueue.h>
 #include <rabit/RabitPeriod.h>
 #include <rabit/RabitSteppedReactor.h>
 #include <rabit/RabitVersion.h>
 #include <rabit/RabitWakeup.h>
 #include <rabit/SystemTimeClock.h>
 #include <rabit/UptimeClock.h>
+
+#include <boost/signals2.hpp>
 
 #include <chrono>
 #include <memory>
@@ -37,6 +41,19 @@ TEST(CoreExample, LinesOfTheLogGoWhereTheProgramWants)
     EXPECT_EQ(lines, std::vector<std::string>{"battery is low"});
 }
 // [/log]
+
+// [compatible]
+// A handler made for Boost.Signals2. A source that includes what it uses may define RABIT_LEAN_HEADERS.
+TEST(CoreExample, AHandlerOfBoostIsTakenAsAnyOther)
+{
+    int added = 0;
+    const Rabit::RabitBoostSlot slot([&added] { ++added; });
+    Rabit::RabitMessageQueue<int> queue(10, "Numbers");
+    queue.Register_SomethingEnqueued(slot.slot_function());
+    queue.AddMessage(7);
+    EXPECT_EQ(added, 1);
+}
+// [/compatible]
 
 // [clocks]
 TEST(CoreExample, TimeComesFromTheClockOfTheWorkspace)

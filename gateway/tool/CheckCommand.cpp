@@ -18,6 +18,8 @@
 
 namespace Rabit::Tool
 {
+namespace CheckParts
+{
 namespace
 {
 
@@ -284,9 +286,11 @@ int Run(const Options &options)
 }
 
 }  // namespace
+}  // namespace CheckParts
 
 void AddCheckCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace CheckParts;
     const auto [command, options] = AddCommand<Options>(
         app, chosen, "check",
         "What is wrong with configurations, alone and together, and what they put on the air", &Run,

@@ -19,6 +19,8 @@
 
 namespace Rabit::Tool
 {
+namespace DoctorParts
+{
 namespace
 {
 
@@ -158,9 +160,11 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace DoctorParts
 
 void AddDoctorCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace DoctorParts;
     const auto [command, options] = AddCommand<CommonOptions>(
         app, chosen, "doctor", "What is wrong with this machine, the network and the fleet, and what to do",
         &Examine);

@@ -12,6 +12,8 @@
 
 namespace Rabit::Tool
 {
+namespace EchoParts
+{
 namespace
 {
 
@@ -178,9 +180,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace EchoParts
 
 void AddEchoCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace EchoParts;
     const auto [command, options] =
         AddCommand<Options>(app, chosen, "echo", "The values of a message, as they come", &Run);
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any node; Pose: of all nodes")

@@ -34,6 +34,8 @@
 
 namespace Rabit::Tool
 {
+namespace FetchParts
+{
 namespace
 {
 
@@ -294,9 +296,11 @@ int RunFetch(const FetchOptions &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace FetchParts
 
 void AddFetchCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace FetchParts;
     auto options = std::make_shared<FetchOptions>();
     CLI::App *command = app.add_subcommand("fetch", "Fetch a file of a node, resumed after interruptions");
     command->add_option("FILE", options->What, "A file of a node, as uav1:flight.mcap")->required();

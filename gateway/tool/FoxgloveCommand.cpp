@@ -11,6 +11,8 @@
 
 namespace Rabit::Tool
 {
+namespace FoxgloveParts
+{
 namespace
 {
 
@@ -103,9 +105,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace FoxgloveParts
 
 void AddFoxgloveCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace FoxgloveParts;
     const auto [command, options] =
         AddCommand<Options>(app, chosen, "foxglove", "What is on the network, live in Foxglove or Lichtblick",
                             &Run, &CheckListen);

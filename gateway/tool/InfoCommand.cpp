@@ -16,6 +16,8 @@
 
 namespace Rabit::Tool
 {
+namespace InfoParts
+{
 namespace
 {
 
@@ -204,9 +206,11 @@ int Run(const Options &options)
 }
 
 }  // namespace
+}  // namespace InfoParts
 
 void AddInfoCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace InfoParts;
     const auto [command, options] = AddCommand<Options>(app, chosen, "info", "What recordings hold", &Run);
     command->add_option("FILE", options->Files, "Recordings (MCAP)")->required();
     command->add_flag("--scan", options->Scan, "Read all of it, whatever its index says");

@@ -14,6 +14,8 @@
 
 namespace Rabit::Tool
 {
+namespace KeysCheckParts
+{
 namespace
 {
 
@@ -181,9 +183,11 @@ int Run(const Options &options)
 }
 
 }  // namespace
+}  // namespace KeysCheckParts
 
 void AddKeysCheckCommand(CLI::App &keys, Chosen &chosen)
 {
+    using namespace KeysCheckParts;
     const auto [command, options] =
         AddCommand<Options>(keys, chosen, "check", "What is wrong with keys, and who may do what", &Run);
     command->add_flag("--json", options->Json, "One JSON object a line");

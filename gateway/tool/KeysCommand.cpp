@@ -21,6 +21,8 @@
 
 namespace Rabit::Tool
 {
+namespace KeysParts
+{
 namespace
 {
 
@@ -335,9 +337,11 @@ void CheckRequest(const Options &options)
 }
 
 }  // namespace
+}  // namespace KeysParts
 
 void AddKeysCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace KeysParts;
     CLI::App *keys = app.add_subcommand("keys", "Keys, certificates and permissions of a fleet");
     keys->require_subcommand(1);
     CLI::App *command = nullptr;

@@ -25,6 +25,8 @@
 
 namespace Rabit::Tool
 {
+namespace KnewParts
+{
 namespace
 {
 
@@ -367,9 +369,11 @@ int Run(const Options &options)
 }
 
 }  // namespace
+}  // namespace KnewParts
 
 void AddKnewCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace KnewParts;
     const auto [command, options] =
         AddCommand<Options>(app, chosen, "knew", "What nodes knew of each other, and how old it was", &Run);
     command->add_option("FILE", options->File, "A merged recording, or that of one node")->required();

@@ -21,6 +21,8 @@
 
 namespace Rabit::Tool
 {
+namespace LabParts
+{
 namespace
 {
 
@@ -141,9 +143,11 @@ void AddReplay(CLI::App &lab, Chosen &chosen)
 }
 
 }  // namespace
+}  // namespace LabParts
 
 void AddLabCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace LabParts;
     CLI::App *lab = app.add_subcommand("lab", "Flies a fleet of one's own through a scenario with faults");
     lab->require_subcommand(1);
     const auto add = [&chosen, lab](const char *name, const char *what, const char *argument,

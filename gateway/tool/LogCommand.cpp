@@ -9,6 +9,8 @@
 
 namespace Rabit::Tool
 {
+namespace LogParts
+{
 namespace
 {
 
@@ -150,9 +152,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace LogParts
 
 void AddLogCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace LogParts;
     const auto [command, options] = AddCommand<Options>(app, chosen, "log", "The log of a node", &Run);
     command->add_option("NODE", options->Node, "As uav1")->required();
     AddCommonOptions(*command, options->Common, 5.0);

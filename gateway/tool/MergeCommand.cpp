@@ -14,6 +14,8 @@
 
 namespace Rabit::Tool
 {
+namespace MergeParts
+{
 namespace
 {
 
@@ -197,9 +199,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace MergeParts
 
 void AddMergeCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace MergeParts;
     const auto [command, options] = AddCommand<Options>(
         app, chosen, "merge", "Recordings of several nodes, on one time line in one file", &Run);
     command->add_option("OUT", options->To, "The file to be made; none is overwritten")->required();

@@ -17,6 +17,8 @@
 
 namespace Rabit::Tool
 {
+namespace MessagesParts
+{
 namespace
 {
 
@@ -164,9 +166,11 @@ int Run(const Options &all, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace MessagesParts
 
 void AddMessagesCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace MessagesParts;
     const auto [command, options] = AddCommand<Options>(
         app, chosen, "messages", "All messages, their types, who publishes and who reads them", &Run);
     AddCommonOptions(*command, options->Common, 1.8);

@@ -13,6 +13,8 @@
 
 namespace Rabit::Tool
 {
+namespace MeterParts
+{
 namespace
 {
 
@@ -146,9 +148,11 @@ std::string Bytes(double bytes)
 }
 
 }  // namespace
+}  // namespace MeterParts
 
 void AddHzCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace MeterParts;
     AddMeterCommand(
         app, chosen, "hz", "How often a message comes, and how evenly",
         {{"RATE", "rate_hz", [](const Measured &node) { return node.Values.Rate(); },
@@ -162,6 +166,7 @@ void AddHzCommand(CLI::App &app, Chosen &chosen)
 
 void AddBytesCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace MeterParts;
     AddMeterCommand(
         app, chosen, "bytes",
         "How large a message is, and what it costs on the air, with all headers, for each destination",
@@ -174,6 +179,7 @@ void AddBytesCommand(CLI::App &app, Chosen &chosen)
 
 void AddAgeCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace MeterParts;
     AddMeterCommand(
         app, chosen, "age", "How old values are when they come, and how sure that is",
         {{"50 %", "p50_s", [](const Measured &node) { return node.Values.Age(0.5); }, &DurationText},

@@ -11,6 +11,8 @@
 
 namespace Rabit::Tool
 {
+namespace NodesParts
+{
 namespace
 {
 
@@ -239,9 +241,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace NodesParts
 
 void AddNodesCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace NodesParts;
     const auto [command, options] =
         AddCommand<Options>(app, chosen, "nodes", "Who is there, what each has, and what is wrong", &Run);
     AddCommonOptions(*command, options->Common, 1.8);

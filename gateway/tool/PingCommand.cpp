@@ -13,6 +13,8 @@
 
 namespace Rabit::Tool
 {
+namespace PingParts
+{
 namespace
 {
 
@@ -110,9 +112,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace PingParts
 
 void AddPingCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace PingParts;
     const auto [command, options] =
         AddCommand<Options>(app, chosen, "ping", "Round trips to a node, through its gateway", &Run);
     command->add_option("NODE", options->Node, "As uav1")->required();

@@ -21,6 +21,8 @@
 
 namespace Rabit::Tool
 {
+namespace PlayParts
+{
 namespace
 {
 
@@ -252,9 +254,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace PlayParts
 
 void AddPlayCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace PlayParts;
     const auto [command, options] = AddCommand<Options>(
         app, chosen, "play",
         "Recordings, once more to the network, as nodes `replay.NAME`; on loopback unless told otherwise",

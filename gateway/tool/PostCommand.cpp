@@ -16,6 +16,8 @@
 
 namespace Rabit::Tool
 {
+namespace PostParts
+{
 namespace
 {
 
@@ -194,9 +196,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace PostParts
 
 void AddPostCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace PostParts;
     const auto [command, options] = AddCommand<Options>(
         app, chosen, "post", "Posts a message as a node of that name, once or at a rate", &Run);
     command->add_option("MESSAGE", options->What, "As sim1/Pose: node sim1 posts its Pose")->required();

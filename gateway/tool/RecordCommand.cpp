@@ -27,6 +27,8 @@
 
 namespace Rabit::Tool
 {
+namespace RecordParts
+{
 namespace
 {
 
@@ -231,9 +233,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace RecordParts
 
 void AddRecordCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace RecordParts;
     const auto [command, options] = AddCommand<Options>(
         app, chosen, "record", "What is on the network, into a file that Foxglove opens", &Run, &CheckSizes);
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any; without: all messages");

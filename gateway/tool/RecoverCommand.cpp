@@ -14,6 +14,8 @@
 
 namespace Rabit::Tool
 {
+namespace RecoverParts
+{
 namespace
 {
 
@@ -83,9 +85,11 @@ int Run(const Options &options, const Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace RecoverParts
 
 void AddRecoverCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace RecoverParts;
     const auto [command, options] = AddCommand<Options>(
         app, chosen, "recover", "What can be read of a recording that was cut off, as a whole one", &Run);
     command->add_option("FILE", options->File, "A recording (MCAP), which stays as it is")->required();

@@ -17,6 +17,8 @@
 
 namespace Rabit::Tool
 {
+namespace SendParts
+{
 namespace
 {
 
@@ -300,9 +302,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace SendParts
 
 void AddSendCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace SendParts;
     const auto [command, options] = AddCommand<Options>(
         app, chosen, "send", "Sends to a queue, waits for the outcome, and exits by it", &Run);
     command->add_option("QUEUE", options->Address, "uav1/MissionControl; */MissionControl: of all nodes")

@@ -20,6 +20,8 @@
 
 namespace Rabit::Tool
 {
+namespace TopParts
+{
 namespace
 {
 
@@ -174,9 +176,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace TopParts
 
 void AddTopCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace TopParts;
     const auto [command, options] =
         AddCommand<Options>(app, chosen, "top", "Which node sends how much, and of which class", &Run);
     AddCommonOptions(*command, options->Common, 3.0);

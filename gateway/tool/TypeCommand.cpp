@@ -10,6 +10,8 @@
 
 namespace Rabit::Tool
 {
+namespace TypeParts
+{
 namespace
 {
 
@@ -108,9 +110,11 @@ int Run(const Options &options, Wakeup &wakeup)
 }
 
 }  // namespace
+}  // namespace TypeParts
 
 void AddTypeCommand(CLI::App &app, Chosen &chosen)
 {
+    using namespace TypeParts;
     const auto [command, options] =
         AddCommand<Options>(app, chosen, "type", "The IDL of a type, from a node that has it", &Run);
     command->add_option("NAME", options->Name, "Of a type, as Uav::Pose, or of a message, as Pose")

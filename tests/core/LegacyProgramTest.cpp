@@ -137,6 +137,19 @@ TEST(LegacyProgram, RunsUnchanged)
     EXPECT_NE(nav.Last.find(",0"), std::string::npos);
 }
 
+TEST(LegacyProgram, HasTheSlotsOfBoostWithTheQueues)
+{
+    using Slot = boost::signals2::signal<void()>::slot_type;
+    static_assert(std::is_same_v<Rabit::RabitMessageQueue<int>::_sigEnqueuSlotType, Slot>);
+    static_assert(std::is_same_v<Rabit::RabitNonBlockingSPSCQueue<int>::_sigEnqueuSlotType, Slot>);
+    int calls = 0;
+    const Rabit::RabitMessageQueue<int>::_sigEnqueuSlotType slot([&calls] { ++calls; });
+    Rabit::RabitMessageQueue<int> queue(1, "Numbers");
+    queue.Register_SomethingEnqueued(slot.slot_function());
+    queue.AddMessage(1);
+    EXPECT_EQ(calls, 1);
+}
+
 TEST(LegacyProgram, SeesAllExceptionsWhicheverHeaderCameFirst)
 {
     PositionMessage message;

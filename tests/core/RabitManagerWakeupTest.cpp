@@ -3,6 +3,8 @@
 
 #include <rabit/GlobalPublishSubscribeException.h>
 
+#include <boost/bind/bind.hpp>
+
 #include <gtest/gtest.h>
 
 #include <memory>

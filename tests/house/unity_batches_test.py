@@ -15,7 +15,7 @@ import batches  # noqa: E402
 
 class Defined(unittest.TestCase):
     def defined(self, text):
-        return batches.Source(text).defined
+        return batches.Source(text).names
 
     def test_functions_values_and_types_of_namespaces(self):
         text = """
@@ -70,6 +70,11 @@ class Batches(unittest.TestCase):
     def test_have_each_name_once(self):
         same = "namespace { int Same() { return 1; } }"
         self.assertEqual(self.batches(9, a=same, b=same, c="int Other() { return 1; }"), [["a", "c"], ["b"]])
+
+    def test_may_have_one_name_in_different_namespaces(self):
+        def named(name):
+            return f"namespace Rabit {{ namespace {name} {{ namespace {{ struct Same {{ int x; }}; }} }} void Add{name}() {{\n    using namespace {name};\n}} }}"
+        self.assertEqual(self.batches(9, a=named("A"), b=named("B"), c=named("A")), [["a", "b"], ["c"]])
 
     def test_keep_macros_from_those_that_use_the_name(self):
         self.assertEqual(self.batches(9, a="#define CHECK(x) x\n", b="int F() { return CHECK(1); }\n"), [["a"], ["b"]])

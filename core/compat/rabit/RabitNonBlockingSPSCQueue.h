@@ -1,11 +1,9 @@
 #pragma once
 
+#include <rabit/RabitBoost.h>
 #include <rabit/RabitEvent.h>
 
-#include <boost/bind/bind.hpp>
-#include <boost/function.hpp>
 #include <boost/lockfree/spsc_queue.hpp>
-#include <boost/signals2.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -27,7 +25,7 @@ template <typename T>
 class RabitNonBlockingSPSCQueue
 {
 public:
-    typedef boost::signals2::signal<void()>::slot_type _sigEnqueuSlotType;
+    typedef RabitBoostSlot _sigEnqueuSlotType;
     typedef T ElementType;
 
     static constexpr int MaxCapacity = 1000000;

@@ -3,6 +3,7 @@
 #include <rabit/ManagerControlMessage.h>
 #include <rabit/ManagerStats.h>
 #include <rabit/ManagerStatusMessage.h>
+#include <rabit/RabitBoost.h>
 #include <rabit/RabitLog.h>
 #include <rabit/RabitMessage.h>
 #include <rabit/RabitMessageQueue.h>
@@ -10,8 +11,6 @@
 #include <rabit/RabitStopWatch.h>
 #include <rabit/RabitWakeup.h>
 #include <rabit/RabitWorkspace.h>
-
-#include <boost/bind/bind.hpp>
 
 #include <atomic>
 #include <chrono>

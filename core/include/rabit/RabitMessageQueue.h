@@ -1,13 +1,10 @@
 #pragma once
 
+#include <rabit/RabitBoost.h>
 #include <rabit/RabitEvent.h>
 #include <rabit/RabitManagerTrace.h>
 #include <rabit/RabitRing.h>
 #include <rabit/SafeQueue.h>
-
-#include <boost/bind/bind.hpp>
-#include <boost/function.hpp>
-#include <boost/signals2.hpp>
 
 #include <algorithm>
 #include <cstddef>
@@ -33,7 +30,7 @@ template <typename T>
 class RabitMessageQueue
 {
 public:
-    typedef boost::signals2::signal<void()>::slot_type _sigEnqueuSlotType;
+    typedef RabitBoostSlot _sigEnqueuSlotType;
     typedef T ElementType;
 
     static constexpr int MaxCapacity = 1000000;
