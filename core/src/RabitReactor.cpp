@@ -5,6 +5,7 @@
 #include "ShutdownSignals.h"
 
 #include <rabit/RabitLog.h>
+#include <rabit/StandardDescriptors.h>
 
 #include <algorithm>
 #include <atomic>
@@ -45,7 +46,10 @@ struct RabitReactor::State
 
 RabitReactor::RabitReactor() : RabitReactor(*RabitWorkspace::GetWorkspace()) {}
 
-RabitReactor::RabitReactor(RabitWorkspace &workspace) : _state(std::make_unique<State>(workspace)) {}
+RabitReactor::RabitReactor(RabitWorkspace &workspace) : _state(std::make_unique<State>(workspace))
+{
+    OpenStandardDescriptors();
+}
 
 RabitReactor::~RabitReactor()
 {

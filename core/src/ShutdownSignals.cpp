@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cerrno>
+#include <cstdint>
 #include <ctime>
 #include <mutex>
 
@@ -14,17 +15,18 @@ namespace Rabit
 namespace
 {
 
-constexpr std::array<int, 2> Signals{SIGINT, SIGTERM};
+constexpr std::array<int, 3> Signals{SIGINT, SIGTERM, SIGHUP};
 
-// The handler uses lock-free atomics, sem_post and sigaction only: all async-signal-safe
-// (POSIX.1-2017, 2.4.3).
-static_assert(std::atomic<bool>::is_always_lock_free);
+// The handler uses lock-free atomics, clock_gettime, sem_post, sigaction and raise only: all
+// async-signal-safe (POSIX.1-2017, 2.4.3).
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<std::int64_t>::is_always_lock_free);
 
 struct SignalState
 {
     std::array<ShutdownSignals::Place, 64> Places;
     std::array<std::atomic<bool>, Signals.size()> Installed{};
-    std::mutex Mutex;  // for what follows; never taken by the handler
+    std::atomic<std::int64_t> FirstAt{0};  // the first signal by the monotonic clock, in ns; 0: none has come
+    std::mutex Mutex;                      // for what follows; never taken by the handler
     int Listeners = 0;
 };
 
@@ -51,16 +53,28 @@ void RestoreDefault(int signal)
     sigaction(signal, &action, nullptr);
 }
 
-extern "C" void OnShutdownSignal(int)
+std::int64_t MonotonicNanoseconds()
+{
+    std::timespec now{};
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    return std::int64_t(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
+}
+
+extern "C" void OnShutdownSignal(int signal)
 {
     const int savedErrno = errno;
     SignalState &state = State();
-    for (std::size_t i = 0; i < Signals.size(); ++i)
+    const std::int64_t now = MonotonicNanoseconds();
+    std::int64_t first = 0;
+    if (!state.FirstAt.compare_exchange_strong(first, now))
     {
-        if (state.Installed[i].exchange(false))
+        if (now - first >= std::chrono::nanoseconds(ShutdownSignals::Repeat).count())
         {
-            RestoreDefault(Signals[i]);
+            RestoreDefault(signal);
+            raise(signal);  // takes effect when the handler returns, since the signal is blocked in it
         }
+        errno = savedErrno;
+        return;
     }
     for (ShutdownSignals::Place &place : state.Places)
     {
@@ -146,12 +160,13 @@ ShutdownSignals::ShutdownSignals(bool handle) : _place(&_own)
     if (place == nullptr)
     {
         RabitLog::Write(RabitLogLevel::Warning,
-                        "too many reactors run: one does not react to SIGINT and SIGTERM");
+                        "too many reactors run: one does not react to SIGINT, SIGTERM and SIGHUP");
         return;
     }
     _place = place;
     if (++state.Listeners == 1)
     {
+        state.FirstAt.store(0);
         InstallHandlers(state);
     }
 }

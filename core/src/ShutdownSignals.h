@@ -8,15 +8,18 @@
 namespace Rabit
 {
 
-// A running reactor waits here for SIGINT and SIGTERM, and for its managers. While at least one listener
-// handles signals, a handler is installed for each of the two signals whose disposition is the default. The
-// last listener restores the default.
+// A running reactor waits here for SIGINT, SIGTERM and SIGHUP, and for its managers. While at least one
+// listener handles signals, a handler is installed for each of the three signals whose disposition is the
+// default. The last listener restores the default.
 //
-// The first signal wakes all listeners and restores the default disposition, so that a second one ends the
-// process at once.
+// The first signal wakes all listeners. One that comes later than Repeat after it ends the process at once;
+// earlier ones are taken for the same one. A program may get one signal twice: `timeout` of coreutils sends
+// it to its child and then to the child's process group, and a terminal sends it to a shell's whole group.
 class ShutdownSignals
 {
 public:
+    static constexpr std::chrono::milliseconds Repeat{500};
+
     // Without `handle`, no signal wakes this listener. The same holds, and is logged, if 64 others listen
     // already.
     explicit ShutdownSignals(bool handle);

@@ -1,5 +1,6 @@
 // The program `rabit`: looks at a fleet, and speaks to it. README.md shows it.
 #include <rabit/RabitVersion.h>
+#include <rabit/StandardDescriptors.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/idl/NearestWord.h>
 
@@ -128,7 +129,8 @@ int RunProgram(int argc, char **argv)
     }
     catch (const NetworkError &error)
     {
-        Output::Talk(std::string(error.what()) + " (`rabit doctor` tells what is wrong with the network)");
+        Output::Talk(std::string(error.what()) +
+                     " (`rabit doctor` tells what is wrong with the network)");
         return NoNetwork;
     }
     catch (const ConfigError &error)
@@ -147,5 +149,6 @@ int RunProgram(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
+    OpenStandardDescriptors();
     return Output::Ended(RunProgram(argc, argv));
 }

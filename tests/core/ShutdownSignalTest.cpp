@@ -11,6 +11,7 @@
 
 #include <unistd.h>
 #include <csignal>
+#include <cstring>
 
 namespace
 {
@@ -53,6 +54,8 @@ struct RunningReactor
 
 class ShutdownSignal : public testing::TestWithParam<int>
 {
+protected:
+    void SetUp() override { signal(GetParam(), SIG_DFL); }  // nohup has SIGHUP ignored
 };
 
 TEST_P(ShutdownSignal, EndsRunAfterEveryManagersShutdown)
@@ -117,7 +120,7 @@ class ShutdownSignalDeathTest : public ShutdownSignal
 {
 };
 
-TEST_P(ShutdownSignalDeathTest, TheSecondOneEndsTheProcessAtOnce)
+TEST_P(ShutdownSignalDeathTest, LaterOnesEndTheProcess)
 {
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     EXPECT_EXIT(
@@ -134,13 +137,23 @@ TEST_P(ShutdownSignalDeathTest, TheSecondOneEndsTheProcessAtOnce)
             };
             kill(getpid(), GetParam());
             Eventually([&] { return shuttingDown.load(); });
-            kill(getpid(), GetParam());
             for (;;)
             {
-                pause();
+                kill(getpid(), GetParam());
             }
         },
         testing::KilledBySignal(GetParam()), "");
+}
+
+TEST_P(ShutdownSignal, ThatIsIgnoredAsAfterNohupStaysIgnored)
+{
+    signal(GetParam(), SIG_IGN);
+    {
+        RunningReactor running;
+        kill(getpid(), GetParam());
+        EXPECT_EQ(running.First->Shutdowns, 0);
+    }
+    EXPECT_EQ(signal(GetParam(), SIG_DFL), SIG_IGN);
 }
 
 TEST_P(ShutdownSignalDeathTest, EndsTheProcessWhenTheProgramSwitchedTheHandlersOff)
@@ -160,10 +173,11 @@ TEST_P(ShutdownSignalDeathTest, EndsTheProcessWhenTheProgramSwitchedTheHandlersO
 
 std::string NameOfSignal(const testing::TestParamInfo<int> &tested)
 {
-    return tested.param == SIGINT ? "SIGINT" : "SIGTERM";
+    return sigabbrev_np(tested.param);
 }
 
-INSTANTIATE_TEST_SUITE_P(Signals, ShutdownSignal, testing::Values(SIGINT, SIGTERM), NameOfSignal);
-INSTANTIATE_TEST_SUITE_P(Signals, ShutdownSignalDeathTest, testing::Values(SIGINT, SIGTERM), NameOfSignal);
+INSTANTIATE_TEST_SUITE_P(Signals, ShutdownSignal, testing::Values(SIGINT, SIGTERM, SIGHUP), NameOfSignal);
+INSTANTIATE_TEST_SUITE_P(Signals, ShutdownSignalDeathTest, testing::Values(SIGINT, SIGTERM, SIGHUP),
+                         NameOfSignal);
 
 }  // namespace

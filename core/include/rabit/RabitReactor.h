@@ -12,9 +12,10 @@ namespace Rabit
 
 // Owns managers and runs them, each on its own thread.
 //
-// While Run is active, SIGINT and SIGTERM shut down all running reactors of the process in an orderly way.
-// A second such signal ends the process at once, as if there were no handler. Signals that the program
-// handles or ignores itself are left alone, and SetHandleSignals(false) switches signal handling off.
+// While Run is active, SIGINT, SIGTERM and SIGHUP shut down all running reactors of the process in an orderly
+// way. One that comes half a second after the first or later ends the process at once, as if there were no
+// handler. Signals that the program handles or ignores itself, as after nohup, are left alone, and
+// SetHandleSignals(false) switches signal handling off.
 //
 // Threads: ShutdownAllManagers may be called from any thread; the rest belongs to the thread that owns the
 // reactor. Several reactors may run at once, in one workspace or in several, without disturbing each other.
@@ -41,8 +42,8 @@ public:
     // Shuts down all managers of this reactor. After a call before Run, Run returns after their Startup and
     // Shutdown.
     void ShutdownAllManagers();
-    // Sets whether Run reacts to SIGINT and SIGTERM (default: true). Must not be called while the reactor
-    // runs.
+    // Sets whether Run reacts to SIGINT, SIGTERM and SIGHUP (default: true). Must not be called while the
+    // reactor runs.
     void SetHandleSignals(bool handle);
     // If a manager has not ended this long after it was told to shut down, a warning names it, and Run goes
     // on waiting for it. The warning is repeated each time the wait has doubled. Default 5 s, at least 1

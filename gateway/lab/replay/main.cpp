@@ -2,6 +2,7 @@
 // one object a line (SimulatedFlight.h). With --about it only writes what was recorded (RecordedFacts.h);
 // with --node it is one node of the flight, in real time (RealLife.h).
 #include <rabit/RabitLog.h>
+#include <rabit/StandardDescriptors.h>
 
 #include <CLI/CLI.hpp>
 
@@ -48,6 +49,7 @@ void WriteAbout(const Rabit::WhatIf::Recording &recording)
 
 int main(int argc, char **argv)
 {
+    Rabit::OpenStandardDescriptors();
     CLI::App app("Flies a recorded flight over another radio, in simulated time.");
     std::vector<std::string> files;
     double rate = 0;

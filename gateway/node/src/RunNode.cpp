@@ -77,7 +77,7 @@ int RunNode(int argc, char **argv, const NodeProgram &program)
                 reactor.AddManager(std::make_unique<BackfillManager>(config, recorder));
             }
             reactor.AddManager(std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport)));
-            reactor.Run();  // until SIGINT or SIGTERM
+            reactor.Run();  // until a signal
             return 0;
         });
 }

@@ -1,4 +1,5 @@
 #include <rabit/RabitLog.h>
+#include <rabit/StandardDescriptors.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/node/RunProgram.h>
 
@@ -12,6 +13,7 @@ namespace Rabit
 
 int RunProgram(CLI::App &app, int argc, char **argv, const std::function<int()> &body)
 {
+    OpenStandardDescriptors();
     try
     {
         app.parse(argc, argv);

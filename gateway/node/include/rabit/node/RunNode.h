@@ -26,9 +26,9 @@ struct NodeProgram
     std::function<void(CLI::App &)> AddOptions{};
 };
 
-// main() of such a program: reads options and configuration, runs the managers and the gateway until SIGINT
-// or SIGTERM, and returns the exit code as RunProgram says. Nothing is thrown. The options are those of
-// NodeOptions. Log lines on stderr begin with the node's name.
+// main() of such a program: reads options and configuration, runs the managers and the gateway until SIGINT,
+// SIGTERM or SIGHUP, and returns the exit code as RunProgram says. Nothing is thrown. The options are those
+// of NodeOptions. Log lines on stderr begin with the node's name.
 int RunNode(int argc, char **argv, const NodeProgram &program);
 
 // The same for a program without options of its own.
