@@ -2,10 +2,12 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <system_error>
+#include <vector>
 
 #include "configuration/ConfigSections.h"
 #include "configuration/ForeignEntries.h"
@@ -41,11 +43,55 @@ std::string ReadFile(const std::string &file)
     return text.str();
 }
 
+// The line in which a second document begins that has something in it; 0: there is none. A line that begins
+// with
+// `---` or `...` and a blank, or is only that, is a marker wherever it stands (YAML 1.2, 9.1.2).
+int SecondDocument(const std::string &text)
+{
+    std::istringstream lines(text);
+    bool hasBegun = false;  // the first document
+    bool hasEnded = false;
+    int marker = 0;
+    std::string line;
+    for (int number = 1; std::getline(lines, line); ++number)
+    {
+        if (number == 1 && line.starts_with("\xEF\xBB\xBF"))
+        {
+            line.erase(0, 3);  // a byte order mark
+        }
+        const bool isMarker = line.starts_with("---") || line.starts_with("...");
+        if (isMarker && (line.size() == 3 || line.find_first_of(" \t\r") == 3))
+        {
+            hasEnded = hasEnded || hasBegun;
+            hasBegun = hasBegun || line[0] == '-';
+            marker = number;
+            line.erase(0, 3);
+        }
+        const std::size_t first = line.find_first_not_of(" \t\r");
+        const bool isDirective = first == 0 && line[0] == '%' && (hasEnded || !hasBegun);
+        if (first == std::string::npos || line[first] == '#' || isDirective)
+        {
+            continue;
+        }
+        if (hasEnded)
+        {
+            return marker;
+        }
+        hasBegun = true;
+    }
+    return 0;
+}
+
 YAML::Node Parse(const std::string &file, const std::string &text)
 {
     try
     {
-        return YAML::Load(text);
+        const YAML::Node first = YAML::Load(text);
+        if (const int line = SecondDocument(text); line > 0)
+        {
+            throw ConfigError(file, line, "a second document: a configuration is one");
+        }
+        return first;
     }
     catch (const YAML::Exception &problem)
     {

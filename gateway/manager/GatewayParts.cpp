@@ -206,7 +206,7 @@ void GatewayManager::Parts::Open()
     catch (const TransportError &error)
     {
         const std::string setting = error.Setting().empty() ? "interfaces" : error.Setting();
-        throw ConfigError(_config.File, LineOfSetting(_config, setting), error.what());
+        throw JoinError(_config.File, LineOfSetting(_config, setting), error.what(), error.Setting());
     }
 }
 

@@ -78,9 +78,10 @@ FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &opt
         _explorer = &gateway->Explorer();
         _reactor.AddManager(std::move(gateway));
     }
-    catch (const ConfigError &error)
+    catch (const JoinError &error)
     {
-        throw NetworkError(error.what());
+        const bool isOfFiles = error.Setting() == "security" || error.Setting() == "backend_config";
+        throw NetworkError(error.what(), !isOfFiles);
     }
     _explorer->SetOnChange([this] { _wakeup.Notify(); });
     _workspace.AddPublishSubscribeMessage(FleetMessageNameOf(config), _fleet);

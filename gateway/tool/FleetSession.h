@@ -27,11 +27,19 @@ class NetworkTrial;
 namespace Rabit::Tool
 {
 
-// The network could not be joined.
+// The network could not be joined, or a service in it not be offered.
 class NetworkError : public std::runtime_error
 {
 public:
-    using std::runtime_error::runtime_error;
+    explicit NetworkError(const std::string &message, bool doctorHelps = false)
+        : std::runtime_error(message), _doctorHelps(doctorHelps)
+    {
+    }
+    // True if `rabit doctor` would find the cause.
+    bool DoctorHelps() const { return _doctorHelps; }
+
+private:
+    bool _doctorHelps;
 };
 
 // This program as a member of the network, as long as the object lives. Main thread only.
@@ -40,8 +48,9 @@ class FleetSession
 public:
     using Node = FleetExplorer::Node;
 
-    // Throws NetworkError. If --node names this tool, first listens under another name, for 1.5 s as a rule;
-    // throws std::runtime_error if a node has that name.
+    // Throws NetworkError, and ConfigError for a configuration that no network could mend. If --node names
+    // this tool, first listens under another name, for 1.5 s as a rule; throws std::runtime_error if a node
+    // has that name.
     FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup);
     ~FleetSession();
 

@@ -130,7 +130,7 @@ int RunProgram(int argc, char **argv)
     catch (const NetworkError &error)
     {
         Output::Talk(std::string(error.what()) +
-                     " (`rabit doctor` tells what is wrong with the network)");
+                     (error.DoctorHelps() ? " (`rabit doctor` tells what is wrong with the network)" : ""));
         return NoNetwork;
     }
     catch (const ConfigError &error)

@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace Rabit
 {
@@ -20,6 +21,21 @@ public:
                              (file.empty() ? "" : " ") + message)
     {
     }
+};
+
+// A transport could not join the network with this configuration.
+class JoinError : public ConfigError
+{
+public:
+    JoinError(const std::string &file, int line, const std::string &message, std::string setting)
+        : ConfigError(file, line, message), _setting(std::move(setting))
+    {
+    }
+    // The setting at fault, as TransportError tells it; empty if no single one is.
+    const std::string &Setting() const { return _setting; }
+
+private:
+    std::string _setting;
 };
 
 }  // namespace Rabit
