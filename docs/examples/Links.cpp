@@ -29,7 +29,7 @@ using namespace std::chrono_literals;
 class Host : public Rabit::LinkOutput, public Rabit::LocalQueues, public Rabit::IncarnationSource
 {
 public:
-    void Send(const Rabit::LinkFrame &frame) override
+    void Send(const Rabit::LinkFrame &frame, std::string_view) override
     {
         std::vector<std::uint8_t> bytes(Rabit::LinkFrameCodec::EncodedSize(frame));
         Rabit::LinkFrameCodec::Encode(frame, bytes);

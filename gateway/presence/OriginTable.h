@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -41,10 +42,24 @@ public:
         }
     };
 
+    // An incarnation that another one has replaced never comes back: over several paths, the beats of the new
+    // one come by one of them first, and the others still know the former one. It is ignored.
     void Set(const std::string &node, const Origin &origin)
     {
         const std::lock_guard lock(_mutex);
-        _origins[node] = origin;
+        Known &known = _origins[node];
+        const std::uint64_t present = known.Present.Incarnation;
+        if (origin.Incarnation != 0 &&
+            std::find(known.Former.begin(), known.Former.end(), origin.Incarnation) != known.Former.end())
+        {
+            return;
+        }
+        if (present != 0 && present != origin.Incarnation)
+        {
+            std::rotate(known.Former.rbegin(), known.Former.rbegin() + 1, known.Former.rend());
+            known.Former.front() = present;
+        }
+        known.Present = origin;
     }
 
     void Forget(const std::string &node)
@@ -58,12 +73,18 @@ public:
     {
         const std::lock_guard lock(_mutex);
         const auto found = _origins.find(node);
-        return found == _origins.end() ? std::nullopt : std::optional<Origin>(found->second);
+        return found == _origins.end() ? std::nullopt : std::optional<Origin>(found->second.Present);
     }
 
 private:
+    struct Known
+    {
+        Origin Present{};
+        std::array<std::uint64_t, 4> Former{};  // incarnations, the last one first; 0: none
+    };
+
     mutable std::mutex _mutex;
-    std::map<std::string, Origin, std::less<>> _origins;
+    std::map<std::string, Known, std::less<>> _origins;
 };
 
 }  // namespace Rabit

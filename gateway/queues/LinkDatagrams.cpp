@@ -3,7 +3,7 @@
 namespace Rabit
 {
 
-void LinkDatagrams::Add(const LinkFrame &frame)
+void LinkDatagrams::Add(const LinkFrame &frame, std::string_view queue)
 {
     if (_used == _datagrams.size())
     {
@@ -11,7 +11,7 @@ void LinkDatagrams::Add(const LinkFrame &frame)
     }
     Datagram &datagram = _datagrams[_used];
     datagram.Destination.assign(frame.Destination);
-    datagram.Queue.assign(frame.HasData ? frame.Data.Queue : std::string_view());
+    datagram.Queue.assign(queue);
     datagram.Frame = frame;
     ++_used;
 }
@@ -21,7 +21,10 @@ void LinkDatagrams::BindNames()
     for (std::size_t i = 0; i < _used; ++i)
     {
         _datagrams[i].Frame.Destination = _datagrams[i].Destination;
-        _datagrams[i].Frame.Data.Queue = _datagrams[i].Queue;
+        if (!_datagrams[i].Frame.Data.Queue.empty())  // it is left out once the other end knows the link
+        {
+            _datagrams[i].Frame.Data.Queue = _datagrams[i].Queue;
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,13 +18,13 @@ public:
     struct Datagram
     {
         std::string Destination;
-        std::string Queue;
-        LinkFrame Frame;  // encoded when it is written, straight into the transport's memory
+        std::string Queue;  // of its messages; empty: it has none
+        LinkFrame Frame;    // encoded when it is written, straight into the transport's memory
     };
 
     // Keeps the payloads, and the names but for the source's and the types', which must stay valid until the
     // datagram is written (as LinkOutput::Send says). Call BindNames before it is.
-    void Add(const LinkFrame &frame);
+    void Add(const LinkFrame &frame, std::string_view queue);
     // Once no more are added: has the frames name their destinations and queues out of this object's memory.
     void BindNames();
     bool IsEmpty() const { return _used == 0; }

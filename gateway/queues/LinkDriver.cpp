@@ -17,7 +17,7 @@ LinkSettings SettingsOf(const GatewayConfig &config, std::uint64_t clockName)
     LinkSettings settings;
     settings.Node = config.Node;
     settings.Clock = std::max<std::uint64_t>(clockName, 1);  // 0 is no name
-    settings.MaxDatagram = LargestLinkFrame(config.MaxDatagram, config.Security.has_value());
+    settings.MaxDatagram = LargestLinkFrameOf(config);
     settings.LargestMessage = LargestSample;
     return settings;
 }
@@ -282,9 +282,10 @@ LinkRefusal LinkDriver::Enqueue(const std::string &node, const std::string &queu
     return enqueued.Refusal;
 }
 
-void LinkDriver::Send(const LinkFrame &frame)
+void LinkDriver::Send(const LinkFrame &frame, std::string_view queue)
 {
-    _outbox.Add(frame);
+    // With one path nobody asks whose messages they are.
+    _outbox.Add(frame, _second.Choose ? queue : frame.HasData ? frame.Data.Queue : "");
 }
 
 // Frames with messages of class bulk never go by a second path.

@@ -145,7 +145,7 @@ public:
 
 private:
     // LinkOutput; called by LinkNode with the mutex held.
-    void Send(const LinkFrame &frame) override;
+    void Send(const LinkFrame &frame, std::string_view queue) override;
     bool SendsAcksAlone(std::string_view destination) const override;
     LinkOptions OptionsOf(std::string_view destination, std::string_view queue) const override;
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/gateway/GatewayConfig.h>
 #include <rabit/transport/Transport.h>
 
 #include <cstddef>
@@ -19,5 +20,7 @@ inline constexpr std::size_t LinkSampleOverhead = 8;
 // With security, signatures take some of it: one of a message, one of the frame, and one for each of a few
 // nodes. In a larger fleet such a datagram is larger.
 std::size_t LargestLinkFrame(std::size_t maxDatagram, bool secured = false);
+// The same over all paths of a gateway, each with or without keys: one frame may go by any of them.
+std::size_t LargestLinkFrameOf(const GatewayConfig &config);
 
 }  // namespace Rabit

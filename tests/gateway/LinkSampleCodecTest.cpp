@@ -7,6 +7,7 @@
 #include "gateway.idl.h"
 #include "wire/GatewayTopics.h"
 #include "wire/LinkSampleCodec.h"
+#include "wire/LinkTopics.h"
 
 namespace Rabit
 {
@@ -89,6 +90,20 @@ TEST(LinkSampleCodec, RefusesABufferOfAnotherSize)
     const LinkSampleEncoder encoder(frame);
     std::vector<std::uint8_t> bytes(encoder.EncodedSize() + 1);
     EXPECT_FALSE(encoder.Encode(bytes));
+}
+
+// A frame may go by any path, so all frames leave room for the keys of one.
+TEST(LinkTopics, LeaveRoomForKeysIfAnyPathHasThem)
+{
+    GatewayConfig config;
+    EXPECT_EQ(LargestLinkFrameOf(config), LargestLinkFrame(config.MaxDatagram, false));
+    config.Paths = {{.Name = "mesh"}, {.Name = "modem"}};
+    EXPECT_EQ(LargestLinkFrameOf(config), LargestLinkFrame(config.MaxDatagram, false));
+    config.Paths[1].Security.emplace();
+    EXPECT_EQ(LargestLinkFrameOf(config), LargestLinkFrame(config.MaxDatagram, true));
+    config.Paths.clear();
+    config.Security.emplace();
+    EXPECT_EQ(LargestLinkFrameOf(config), LargestLinkFrame(config.MaxDatagram, true));
 }
 
 }  // namespace

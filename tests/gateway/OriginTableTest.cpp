@@ -26,5 +26,25 @@ TEST(OriginTable, WhatWasPostedBeforeAStandstillAndComesAgainIsAsOldAsItIs)
     EXPECT_EQ(AfterAStandstill.PostedAt(Ns(1019s).count(), 86s), Ns(19s));
 }
 
+TEST(OriginTable, AFormerIncarnationDoesNotComeBackWhicheverIsHigher)
+{
+    OriginTable origins;
+    const auto incarnationAfter = [&origins](std::uint64_t heard)
+    {
+        OriginTable::Origin origin = AfterAStandstill;
+        origin.Incarnation = heard;
+        origins.Set("uav1", origin);
+        return origins.Find("uav1")->Incarnation;
+    };
+    EXPECT_EQ(incarnationAfter(7), 7U);
+    EXPECT_EQ(incarnationAfter(9), 9U);
+    EXPECT_EQ(incarnationAfter(7), 9U);
+    EXPECT_EQ(incarnationAfter(4), 4U) << "a restart after the clock was put back";
+    EXPECT_EQ(incarnationAfter(9), 4U);
+    EXPECT_EQ(incarnationAfter(7), 4U);
+    origins.Forget("uav1");
+    EXPECT_EQ(incarnationAfter(7), 7U);
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -176,6 +176,9 @@ protected:
             return;
         }
         std::shared_ptr<RabitMessage> message;
+        while (takesPictures && managers["ground"]->GetManagerMessageQueue()->GetMessage(message))
+        {
+        }
         while (managers["uav1"]->GetManagerMessageQueue()->GetMessage(message))
         {
             const auto &command = dynamic_cast<const Uav::Goto &>(*message);
@@ -231,6 +234,7 @@ protected:
     std::vector<double> ages;
     double worstAge = 0;       // largest error of a pose's age
     Duration picturesEach{0};  // messages from the aircraft to the queue of the ground station; 0: none
+    bool takesPictures = false;
     int sent = 0;
     int got = 0;
     Duration lastCommandAt{0};
@@ -369,6 +373,52 @@ TEST_F(PathsTest, AnswersByASecondPathEndSoonAfterTheDoubt)
     RunFor(500ms);
     EXPECT_EQ(got, sent);
     EXPECT_LE(modem.Sent("uav1").Bytes + modem.Sent("ground").Bytes - before, 6000U);  // beats
+}
+
+// Once the other end knows a link, its frames do not name the queue any more. They are messages nevertheless,
+// and no answers, which would keep the doubt of the other end alive for ever.
+TEST_F(PathsTest, ADoubtEndsAlsoIfBothEndsSendMessages)
+{
+    AddBoth();
+    RunFor(3s);
+    picturesEach = CommandPeriod;
+    takesPictures = true;
+    Command(2s);
+    mesh.SetFaults("uav1", "ground", {.Cut = true});
+    Command(500ms);
+    mesh.SetFaults("uav1", "ground", {.Delay = 1ms});
+    Command(15s);
+    const std::uint64_t before = modem.Sent("uav1").Bytes + modem.Sent("ground").Bytes;
+    Command(10s);
+    RunFor(500ms);
+    EXPECT_EQ(got, sent);
+    EXPECT_LE(modem.Sent("uav1").Bytes + modem.Sent("ground").Bytes - before, 12000U);  // beats
+}
+
+TEST_F(PathsTest, BulkIsNotCopiedToTheModemInADoubt)
+{
+    GatewayConfig aircraft = OverBoth(AircraftConfig("uav1"));
+    aircraft.Send.push_back({.To = "ground", .Class = TrafficClass::Bulk});
+    Add("ground", OverBoth(GroundConfig()), "Commands");
+    Add("uav1", aircraft, "MissionControl");
+    RunFor(3s);
+    takesPictures = true;
+    picturesEach = CommandPeriod;
+    RunFor(2s);
+    picturesEach = 0s;
+    RunFor(3s);
+    // The way to the aircraft is dead: nothing is acknowledged, and the beats tell it late.
+    mesh.SetFaults("ground", "uav1", {.Cut = true});
+    std::uint64_t before = modem.Sent("uav1").Bytes;
+    RunFor(1500ms);
+    const std::uint64_t without = modem.Sent("uav1").Bytes - before;
+    mesh.SetFaults("ground", "uav1", {.Delay = 1ms});
+    RunFor(15s);
+    mesh.SetFaults("ground", "uav1", {.Cut = true});
+    before = modem.Sent("uav1").Bytes;
+    picturesEach = CommandPeriod;
+    RunFor(1500ms);
+    EXPECT_LE(modem.Sent("uav1").Bytes - before, without + 6000U) << "the pose may be copied sooner";
 }
 
 TEST_F(PathsTest, IfOnlyTheWayToTheGroundIsDeadThePoseComesByTheOtherPath)

@@ -88,6 +88,7 @@ bool LinkPeer::HeardOf(std::uint64_t incarnation, LinkTime now)
         if (restarted)
         {
             ++_context.Counters.PeerRestarts;
+            _askedSince = LinkNever;  // the former incarnation answers no more
             for (const auto &[queue, receiver] : _receivers)
             {
                 receiver->SourceEnded();

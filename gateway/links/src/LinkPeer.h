@@ -125,7 +125,7 @@ private:
     void AddAcks(LinkFrame &frame, std::size_t most, bool one);
     void AcksSent(const LinkFrame &frame);
     void Refuse(const LinkData &data);
-    void Send(const LinkFrame &frame, bool asks, LinkTime now);
+    void Send(const LinkFrame &frame, std::string_view queue, bool asks, LinkTime now);
     void SendHello(LinkTime now);
 
     // Parts for a queue that this node does not accept, up to a number.

@@ -96,7 +96,7 @@ bool LinkPeer::SendUrgent(LinkTime now)
     LinkFrame &frame = BeginFrame(true, now);
     AddAcks(frame, _context.Settings.MaxDatagram, true);
     AcksSent(frame);
-    Send(frame, false, now);
+    Send(frame, "", false, now);
     return true;
 }
 
@@ -136,7 +136,7 @@ bool LinkPeer::SendData(LinkSender &sender, std::size_t most, LinkTime now)
     }
     frame.Ask = filled == LinkSender::Filled::Question ||
                 (hasParts && (sender.WaitsForAck() || (sender.HasMore() && _path.TakeAsk(now))));
-    Send(frame, filled != LinkSender::Filled::Nothing, now);
+    Send(frame, frame.HasData ? sender.Queue() : "", filled != LinkSender::Filled::Nothing, now);
     // The outbox owns the payloads: keep none of them.
     frame.Data.Items.clear();
     return filled != LinkSender::Filled::Nothing;
@@ -243,7 +243,7 @@ void LinkPeer::AcksSent(const LinkFrame &frame)
     }
 }
 
-void LinkPeer::Send(const LinkFrame &frame, bool asks, LinkTime now)
+void LinkPeer::Send(const LinkFrame &frame, std::string_view queue, bool asks, LinkTime now)
 {
     if (asks)
     {
@@ -251,7 +251,7 @@ void LinkPeer::Send(const LinkFrame &frame, bool asks, LinkTime now)
         _askedAt = AsEchoed(now);
         _askedSince = std::min(_askedSince, _askedAt);
     }
-    _context.Output.Send(frame);
+    _context.Output.Send(frame, queue);
 }
 
 // Hellos to a peer that does not know this node's incarnation, or is away, become more and more seldom.
@@ -266,7 +266,7 @@ void LinkPeer::SendHello(LinkTime now)
     _helloGap.Next();
     const LinkTime step = _silent ? _context.Settings.SilentHelloPeriod : _helloGap.Interval();
     _helloAt = wanted ? now + step : LinkNever;
-    Send(frame, wanted, now);
+    Send(frame, "", wanted, now);
 }
 
 LinkTime LinkPeer::NextDue() const

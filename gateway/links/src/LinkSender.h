@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace Rabit
 {
@@ -34,6 +35,8 @@ public:
     void Advance(bool open, LinkTime now);
     // True if a datagram may be sent now, if the peer is open.
     bool IsReady(LinkTime now) const;
+    // The queue of its messages; valid as long as the object.
+    std::string_view Queue() const { return _queue; }
     // Approximate bytes of parts in the next datagram, at most `most`. Parts that are sent again come first
     // and are not cut anew.
     std::size_t NextBytes(std::size_t most) const;

@@ -26,7 +26,7 @@ public:
         settings.Clock = clock;
         Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
     }
-    void Send(const LinkFrame &frame) override
+    void Send(const LinkFrame &frame, std::string_view) override
     {
         // Encodes and decodes like the real path, but in reused memory.
         _bytes.resize(std::max(_bytes.size(), LinkFrameCodec::EncodedSize(frame)));

@@ -30,7 +30,7 @@ public:
             settings.Clock = ++network._clocks;
             Node = std::make_unique<LinkNode>(settings, *this, *this, *this);
         }
-        void Send(const LinkFrame &frame) override
+        void Send(const LinkFrame &frame, std::string_view) override
         {
             DatasSent += frame.HasData ? 1 : 0;
             Net.Carry(frame);

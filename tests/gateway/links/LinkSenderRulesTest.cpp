@@ -939,6 +939,26 @@ TEST_F(LinkSenderRules, S5_AHelloTellsOfTheNewLifeAsWell)
     EXPECT_THAT(a.TakeOutcomes(), ElementsAre(Pair(2, LinkOutcome::InDoubt)));
 }
 
+// A second path would be used for ever, since nobody answers what the former life was asked.
+TEST_F(LinkSenderRules, S5_ANewLifeEndsTheDoubtOfWhatTheFormerOneWasAsked)
+{
+    const auto isInDoubt = [this]
+    {
+        bool is = false;
+        a.Node->VisitUnanswered(a.Now, [&is](std::string_view) { is = true; });
+        return is;
+    };
+    Contact();
+    a.Enqueue("2");
+    a.Pass(0ms);
+    a.Pass(10s);
+    EXPECT_TRUE(isInDoubt());
+    b.Life += 1;
+    a.Hear(b.Hello());
+    a.Pass(10s);
+    EXPECT_FALSE(isInDoubt());
+}
+
 TEST_F(LinkSenderRules, S5_ANewLifeThatSomethingElseHeardOfGetsNothingBeforeTheLinksKnowIt)
 {
     Contact();

@@ -6,6 +6,8 @@
 #include <rabit/gateway/links/LinkCheck.h>
 #include <rabit/gateway/links/LinkNode.h>
 
+#include <gtest/gtest.h>
+
 #include <deque>
 #include <map>
 #include <memory>
@@ -126,10 +128,12 @@ public:
     std::vector<std::pair<std::uint64_t, std::uint64_t>> Offered;
 
     // A frame with data and acknowledgements is counted among both.
-    void Send(const LinkFrame &frame) override
+    void Send(const LinkFrame &frame, std::string_view queue) override
     {
+        EXPECT_EQ(queue.empty(), !frame.HasData);
         if (frame.HasData)
         {
+            EXPECT_TRUE(frame.Data.Queue.empty() || frame.Data.Queue == queue);
             _datas.emplace_back(frame);
         }
         if (!frame.Acks.empty())

@@ -40,7 +40,7 @@ public:
             Settings.Clock += 100;
             Node = std::make_unique<LinkNode>(Settings, *this, *this, *this);
         }
-        void Send(const LinkFrame &frame) override
+        void Send(const LinkFrame &frame, std::string_view) override
         {
             std::vector<std::uint8_t> bytes(LinkFrameCodec::EncodedSize(frame));
             LinkFrameCodec::Encode(frame, bytes);

@@ -170,7 +170,7 @@ void SimNode::Check()
     }
 }
 
-void SimNode::Send(const LinkFrame &frame)
+void SimNode::Send(const LinkFrame &frame, std::string_view /*queue*/)
 {
     Packet packet{
         .From = _index, .To = NodeOf(frame.Destination), .SenderLife = frame.SenderLife, .Bytes = {}};

@@ -64,7 +64,7 @@ public:
     // Checks what can be checked of this node alone, after an event.
     void Check();
 
-    void Send(const LinkFrame &frame) override;
+    void Send(const LinkFrame &frame, std::string_view queue) override;
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
     bool Accepts(std::string_view source, std::string_view queue) override;

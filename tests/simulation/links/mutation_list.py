@@ -285,7 +285,7 @@ MUTATIONS = [
              "if (true)", "direct"),
     # Hello, frames and malformed input
     Mutation("hello is not answered", "LinkPeer.cpp", "if (frame.Ask && !frame.HasData)", "if (false)", "simulation"),
-    Mutation("hellos are not sent", "LinkPeerSending.cpp", "Send(frame, wanted, now);", "", "simulation"),
+    Mutation("hellos are not sent", "LinkPeerSending.cpp", 'Send(frame, "", wanted, now);', "", "simulation"),
     Mutation("hellos are sent for ever", "LinkPeerSending.cpp",
              "_helloAt = wanted ? now + step : LinkNever;", "_helloAt = now + step;", "direct"),
     Mutation("a short frame is sent to who does not know this node", "LinkPeerSending.cpp",

@@ -76,8 +76,9 @@ class LinkOutput
 public:
     // Sends to the gateway of the node frame.Destination. May be kept and encoded after the call: its source
     // and types are valid as long as the LinkNode, its payloads as long as their owners are held; its
-    // destination and queue only until that node is forgotten, which may be soon: copy them.
-    virtual void Send(const LinkFrame &frame) = 0;
+    // destination and queue only until that node is forgotten, which may be soon: copy them. `queue`: that of
+    // the frame's messages, which the frame itself need not name; empty: it has no messages.
+    virtual void Send(const LinkFrame &frame, std::string_view queue) = 0;
     // True if acknowledgements for that node go in frames of their own, and not in those with messages: then
     // the driver may send them by another path as well.
     virtual bool SendsAcksAlone(std::string_view /*destination*/) const { return false; }
