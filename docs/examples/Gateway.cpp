@@ -136,6 +136,7 @@ public:
         Outcomes.push_back(outcome);
     }
     void Received(const QueueMessage &) override {}
+    void Mirrored(const MirroredSample &) override {}
     void Clocks(std::uint64_t, std::chrono::nanoseconds, const std::vector<PeerClock> &) override {}
     std::vector<Rabit::Gateway::Problem> Problems() override { return {}; }
 

@@ -48,13 +48,14 @@ AcceptRule QueueRule(const ForeignRule &rule)
 
 ForeignReader::ForeignReader(const ForeignRule &rule, const MessageType &type, ForeignMatch::Network network,
                              RabitWorkspace &workspace, std::function<void()> wake,
-                             RabitHandlerThread *handlers)
+                             RabitHandlerThread *handlers, std::shared_ptr<GatewayTap> tap)
     : _rule(rule),
       _type(type),
       _network(std::move(network)),
       _workspace(workspace),
       _wake(wake),
       _handlers(handlers),
+      _tap(std::move(tap)),
       _scratch(type.Create()),
       _queue(QueueRule(rule), workspace, std::move(wake))
 {
@@ -187,21 +188,26 @@ void ForeignReader::Keep(SampleBytes bytes)
         return;
     }
     const Duration now = _workspace.GetClock().Monotonic();
+    const std::size_t held = bytes.size() * (_tap ? 2 : 1);
     bool isFirst = false;
     {
         const std::lock_guard lock(_mutex);
         _undecodableInARow = 0;
         _shown = Shown{now, {}, false};
         isFirst = _waiting.empty();
-        _wasDropped = _waiting.size() >= _rule.Capacity ||
-                      (!isFirst && _waitingBytes + bytes.size() > _rule.CapacityBytes);
+        _wasDropped =
+            _waiting.size() >= _rule.Capacity || (!isFirst && _waitingBytes + held > _rule.CapacityBytes);
         if (_wasDropped)
         {
             ++_overflowed;
             return;
         }
-        _waitingBytes += bytes.size();
-        _waiting.push_back({std::move(decoded.Message), bytes.size()});
+        _waitingBytes += held;
+        _waiting.push_back({std::move(decoded.Message), held});
+        if (_tap)
+        {
+            _waiting.back().Sample.assign(bytes.begin(), bytes.end());
+        }
     }
     if (isFirst)
     {
@@ -273,10 +279,18 @@ void ForeignReader::Deliver()
             break;
         }
         told = _queue.Local();
-        const std::lock_guard lock(_mutex);
-        _waitingBytes -= _waiting.front().Bytes;
-        _waiting.pop_front();
-        ++_samples;
+        std::vector<std::uint8_t> sample;
+        {
+            const std::lock_guard lock(_mutex);
+            sample = std::move(_waiting.front().Sample);
+            _waitingBytes -= _waiting.front().Bytes;
+            _waiting.pop_front();
+            ++_samples;
+        }
+        if (_tap)
+        {
+            _tap->Received({.Node = "", .Queue = _rule.Local, .Type = _rule.Type, .Id = 0, .Sample = sample});
+        }
     }
     if (told)
     {

@@ -3,6 +3,7 @@
 #include <rabit/RabitHandlerThread.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/ForeignRule.h>
+#include <rabit/gateway/GatewayTap.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/Transport.h>
 
@@ -38,10 +39,11 @@ public:
     static constexpr Duration LookPeriod = std::chrono::milliseconds(250);
 
     // Rule, type, workspace and handlers must outlive the object. `wake` is called on any thread when Service
-    // has work. Without `handlers`, handlers run on the two threads above.
+    // has work. Without `handlers`, handlers run on the two threads above. The tap, which may be null, is
+    // told of each message that was put into the queue.
     ForeignReader(const ForeignRule &rule, const MessageType &type, ForeignMatch::Network network,
                   RabitWorkspace &workspace, std::function<void()> wake,
-                  RabitHandlerThread *handlers = nullptr);
+                  RabitHandlerThread *handlers = nullptr, std::shared_ptr<GatewayTap> tap = nullptr);
     ~ForeignReader();
 
     // Opens the reader; throws TransportError. The session must outlive the object.
@@ -67,7 +69,8 @@ private:
     struct Waiting
     {
         std::shared_ptr<RabitMessage> Message;
-        std::size_t Bytes = 0;  // serialized
+        std::size_t Bytes = 0;               // serialized, and once more for the tap
+        std::vector<std::uint8_t> Sample{};  // for the tap, if there is one
     };
 
     bool IsQueue() const { return _rule.Each == ForeignRule::Delivery::Queue; }
@@ -88,6 +91,7 @@ private:
     RabitWorkspace &_workspace;
     const std::function<void()> _wake;
     RabitHandlerThread *const _handlers;
+    const std::shared_ptr<GatewayTap> _tap;
     std::unique_ptr<RabitMessage> _scratch;  // of the transport's handler, which runs once at a time
     std::shared_ptr<PublishSubscribeMessage> _global;  // unchanged once the reader is open
     std::string _localProblem;                         // likewise

@@ -18,7 +18,7 @@ void ForeignTopics::Open(TransportSession &session, RabitManager &manager, Durat
         if (rule.Way == ForeignRule::Direction::Subscribe)
         {
             _readers.emplace_back(rule, type, network, manager.GetWorkspace(), manager.WakeUpHandler(),
-                                  _handlers);
+                                  _handlers, _config.Tap);
             _readers.back().Open(session, now);
             continue;
         }

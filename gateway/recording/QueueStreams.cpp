@@ -50,7 +50,8 @@ void QueueStreams::Received(const QueueMessage &message)
     Record("received", message);
     if (_settings.BlackBox && MatchesAny(_settings.BlackBox->Queues, message.Queue))
     {
-        _target->Happened(std::string(message.Type) + " of " + std::string(message.Node) + " in " +
+        _target->Happened(std::string(message.Type) + " of " +
+                          (message.Node.empty() ? "a foreign program" : std::string(message.Node)) + " in " +
                           std::string(message.Queue));
     }
 }
@@ -74,7 +75,8 @@ void QueueStreams::Record(const char *what, const QueueMessage &message)
 std::uint32_t QueueStreams::StreamOf(const char *what, const QueueMessage &message)
 {
     RecordingStream stream;
-    stream.Topic = _target->Node() + "/Recorder/" + what + "/" + std::string(message.Node) + "/" +
+    stream.Topic = _target->Node() + "/Recorder/" + what + "/" +
+                   (message.Node.empty() ? "(foreign)" : std::string(message.Node)) + "/" +
                    std::string(message.Queue) + "/" + std::string(message.Type);
     const std::lock_guard lock(_mutex);
     if (const auto known = _streams.find(stream.Topic); known != _streams.end())

@@ -31,6 +31,7 @@ public:
     void Settled(std::string_view node, std::string_view queue, std::uint64_t id,
                  QueueOutcome outcome) override;
     void Received(const QueueMessage &message) override;
+    void Mirrored(const MirroredSample &) override {}  // MessageTaps records the posts
     void Clocks(std::uint64_t incarnation, std::chrono::nanoseconds sourceAhead,
                 const std::vector<PeerClock> &peers) override;
     std::vector<Gateway::Problem> Problems() override;

@@ -7,14 +7,14 @@
 #include <cstdio>
 #include <utility>
 
+#include "recording/RecordingName.h"
+
 namespace Rabit
 {
 namespace
 {
 
 constexpr std::uint64_t Second = 1000000000;
-constexpr std::size_t NumberDigits = 6;
-constexpr std::size_t DateLetters = 16;  // 20261123T024640Z
 const std::string NoMore = "the disk takes no more";
 
 std::uint64_t Nanoseconds(std::chrono::nanoseconds duration)
@@ -32,31 +32,11 @@ std::string DateOf(std::uint64_t time)
     return UtcText(static_cast<std::time_t>(time / Second), "%Y%m%dT%H%M%SZ");
 }
 
-std::string Padded(std::uint64_t number)
-{
-    std::string text = std::to_string(number);
-    return text.size() >= NumberDigits ? text : std::string(NumberDigits - text.size(), '0') + text;
-}
-
 // Returns the number in the name of one of this node's files; empty if it is another file.
-std::optional<std::uint64_t> NumberOf(const std::string &file, const std::string &name)
+std::optional<std::uint64_t> NumberOf(const std::string &file, const std::string &node)
 {
-    const std::string begin = name + "_";
-    const std::string end = ".mcap";
-    if (file.size() < begin.size() + end.size() || file.compare(0, begin.size(), begin) != 0 ||
-        file.compare(file.size() - end.size(), end.size(), end) != 0)
-    {
-        return std::nullopt;
-    }
-    const std::size_t after = file.find('_', begin.size());
-    const std::string digits =
-        after == std::string::npos ? "" : file.substr(begin.size(), after - begin.size());
-    // A longer name is a file that was made from one of ours, as `rabit recover` does.
-    const bool isWhole = after != std::string::npos && file.size() == after + 1 + DateLetters + end.size();
-    const bool isNumber =
-        isWhole && digits.size() >= NumberDigits && digits.size() <= 18 &&
-        std::all_of(digits.begin(), digits.end(), [](char letter) { return letter >= '0' && letter <= '9'; });
-    return isNumber ? std::optional(std::uint64_t{std::stoull(digits)}) : std::nullopt;
+    const auto name = RecordingName::Of(file, node);
+    return name && name->IsOriginal ? std::optional(name->Number) : std::nullopt;
 }
 
 }  // namespace
@@ -201,8 +181,8 @@ bool RecordingFiles::Open(Time now, Time firstLogTime)
         const auto own = OwnFiles();
         _number = own.empty() ? 1 : *NumberOf(own.back().first, _settings.Name) + 1;
     }
-    const std::string stem = _settings.Name + "_" + Padded(*_number) + "_" + DateOf(now);
-    const std::string name = stem + ".mcap";
+    const std::string stem = RecordingName::Stem(_settings.Name, *_number, DateOf(now));
+    const std::string name = stem + std::string(RecordingName::End);
     std::string reason;
     _file = _disk.Create(name, reason);
     if (!_file)

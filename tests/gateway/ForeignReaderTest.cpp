@@ -44,6 +44,29 @@ Contact Of(std::uint32_t id)
     return contact;
 }
 
+// Notes what was put into queues.
+class ReceivedTap final : public GatewayTap
+{
+public:
+    void Sent(const QueueMessage &) override {}
+    void Refused(const QueueMessage &, std::string_view) override {}
+    void Settled(std::string_view, std::string_view, std::uint64_t, QueueOutcome) override {}
+    void Received(const QueueMessage &message) override
+    {
+        EXPECT_EQ(message.Node, "");
+        EXPECT_EQ(message.Queue, "Contacts");
+        Contact contact;
+        EXPECT_EQ(message.Type, Contact::IdlType().Name());
+        EXPECT_TRUE(Contact::IdlType().Deserialize(message.Sample, contact));
+        Numbers.push_back(contact.number);
+    }
+    void Mirrored(const MirroredSample &) override {}
+    void Clocks(std::uint64_t, std::chrono::nanoseconds, const std::vector<PeerClock> &) override {}
+    std::vector<Gateway::Problem> Problems() override { return {}; }
+
+    std::vector<std::uint32_t> Numbers;
+};
+
 class ForeignReaderTest : public testing::Test
 {
 protected:
@@ -61,7 +84,7 @@ protected:
         if (!reader)
         {
             reader = std::make_unique<ForeignReader>(
-                rule, type, ForeignMatch::Network{7}, workspace, [this] { ++wakes; }, &handlers);
+                rule, type, ForeignMatch::Network{7}, workspace, [this] { ++wakes; }, &handlers, tap);
             reader->Open(session, Now());
             reader->Service(Now());
         }
@@ -104,6 +127,7 @@ protected:
     ForeignRule rule;
     int wakes = 0;
     RabitHandlerThread handlers;
+    std::shared_ptr<ReceivedTap> tap;
     std::unique_ptr<ForeignReader> reader;
 };
 
@@ -459,6 +483,23 @@ TEST_F(ForeignReaderTest, KeepsSamplesForAQueueThatIsNotThereYet)
     Reader().Service(Now());
     EXPECT_EQ(queue->NoMessagesInQueue(), 1);
     EXPECT_EQ(ProblemText(), "");
+}
+
+TEST_F(ForeignReaderTest, TellsTheTapOfEachMessageThatIsPutIntoTheQueueOnce)
+{
+    tap = std::make_shared<ReceivedTap>();
+    const auto queue = QueueOf(2);
+    Reader();
+    for (std::uint32_t number = 1; number <= 3; ++number)
+    {
+        network.Deliver(type, Of(number), number);
+    }
+    Reader().Service(Now());
+    EXPECT_EQ(tap->Numbers, (std::vector<std::uint32_t>{1, 2}));
+    std::shared_ptr<RabitMessage> message;
+    queue->GetMessage(message);
+    Reader().Service(Now());
+    EXPECT_EQ(tap->Numbers, (std::vector<std::uint32_t>{1, 2, 3}));
 }
 
 TEST_F(ForeignReaderTest, DoesNotTakeASampleTwiceThatAWriterSendsAgainToANewReader)

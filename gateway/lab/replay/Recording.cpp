@@ -13,6 +13,7 @@
 #include "names/NamePattern.h"
 #include "names/QosProfileWords.h"
 #include "recording/mcap/MessageCursor.h"
+#include "recording/mcap/RecordedChannel.h"
 
 namespace Rabit::WhatIf
 {
@@ -32,22 +33,11 @@ bool IsKnown(const std::string &type)
     return MessageTypeRegistry::Find(type) != nullptr;
 }
 
-bool IsMirrored(const std::string &kind)
-{
-    return kind == "mirrored" || kind == "knew";
-}
-
 // The node that recorded a channel.
 std::string RecorderOf(const Mcap::Contents &contents, const Mcap::Channel &channel)
 {
     const std::string merged = Mcap::ValueOf(channel.Metadata, "rabit.recorded_by");
     return merged.empty() ? Mcap::ValueOf(Mcap::MetadataOf(contents, "rabit.node"), "node") : merged;
-}
-
-std::string MessageOf(const Mcap::Channel &channel)
-{
-    const std::string named = Mcap::ValueOf(channel.Metadata, "rabit.message");
-    return named.empty() ? channel.Topic.substr(channel.Topic.find('/') + 1) : named;
 }
 
 Time TimeIn(const Mcap::TextMap &values, const std::string &key)
@@ -174,21 +164,22 @@ void Recording::FindUses(const Mcap::Contents &contents)
     {
         const auto schema = contents.Schemas.find(channel.SchemaId);
         const std::string recorder = RecorderOf(contents, channel);
-        if (!IsNodeName(recorder) || !IsMessageName(MessageOf(channel)) || schema == contents.Schemas.end() ||
-            schema->second.Name == FleetType || !IsKnown(schema->second.Name))
+        if (!IsNodeName(recorder) || schema == contents.Schemas.end() || schema->second.Name == FleetType ||
+            !IsKnown(schema->second.Name))
         {
             continue;
         }
         const std::string &type = schema->second.Name;
-        const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
+        const Mcap::RecordedChannel described = Mcap::Describe(channel);
+        const bool isFromOther =
+            described.Kind == Mcap::ChannelKind::Mirrored || described.Kind == Mcap::ChannelKind::Backfilled;
         Used &used = _used[recorder];
-        if (const std::string origin = Mcap::ValueOf(channel.Metadata, "rabit.node");
-            IsMirrored(kind) && IsNodeName(origin))
+        if (isFromOther && IsNodeName(described.Node) && IsMessageName(described.Message))
         {
-            used.Receives[{origin, MessageOf(channel)}] = type;
+            used.Receives[{described.Node, described.Message}] = type;
         }
         else if (const std::string queue = Mcap::ValueOf(channel.Metadata, "rabit.queue");
-                 kind == "queue received" && IsMessageName(queue))
+                 described.Kind == Mcap::ChannelKind::QueueReceived && IsMessageName(queue))
         {
             used.QueueTypes[queue].insert(type);
         }
@@ -391,15 +382,15 @@ std::map<std::string, std::map<Recording::Stream, std::vector<Recording::Arrival
         {
             const auto found = contents.Channels.find(channel);
             return found != contents.Channels.end() &&
-                   IsMirrored(Mcap::ValueOf(found->second.Metadata, "rabit.kind"));
+                   Mcap::Describe(found->second).Kind == Mcap::ChannelKind::Mirrored;
         };
         Mcap::MessageCursor cursor(*_files[file], contents, {.Wants = wants});
         while (const auto message = cursor.Next())
         {
             const Mcap::Channel &channel = contents.Channels.at(message->ChannelId);
-            arrivals[RecorderOf(contents, channel)]
-                    [{Mcap::ValueOf(channel.Metadata, "rabit.node"), MessageOf(channel)}]
-                        .push_back({message->LogTime, message->PublishTime});
+            const Mcap::RecordedChannel described = Mcap::Describe(channel);
+            arrivals[RecorderOf(contents, channel)][{described.Node, described.Message}].push_back(
+                {message->LogTime, message->PublishTime});
         }
     }
     return arrivals;

@@ -66,7 +66,8 @@ bool McapWriter::Add(const Message &message)
     const bool isLarge = message.Data.size() >= LargeMessage;
     ChunkBuilder &chunk = isLarge ? _large : _small;
     const std::size_t full = isLarge ? LargeChunkSize : ChunkSize;
-    if (chunk.Size() + message.Data.size() > full && !FinishChunk(chunk))
+    // Both, so that the file has all messages that were added before those of a chunk that follows.
+    if (chunk.Size() + message.Data.size() > full && !FinishChunks())
     {
         return false;
     }

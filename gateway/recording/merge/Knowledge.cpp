@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "recording/mcap/MessageCursor.h"
+#include "recording/mcap/RecordedChannel.h"
 #include "recording/merge/ChannelChunks.h"
 #include "recording/merge/ClockPair.h"
 #include "recording/merge/ClockReport.h"
@@ -24,12 +25,6 @@ template <typename Number>
 std::optional<Number> NumberOf(const Mcap::TextMap &values, const std::string &key)
 {
     return NumberIn<Number>(Mcap::ValueOf(values, key));
-}
-
-// Returns `Pose` for `uav1/Pose`.
-std::string WithoutNode(const std::string &topic, const std::string &node)
-{
-    return topic.compare(0, node.size() + 1, node + "/") == 0 ? topic.substr(node.size() + 1) : topic;
 }
 
 std::vector<KnowerLife> LivesOf(const Mcap::Contents &contents)
@@ -138,18 +133,19 @@ Knowledge::Knowledge(const Mcap::Contents &contents)
     std::map<std::tuple<std::size_t, std::string, std::string, std::string>, std::size_t> known;
     for (const auto &[id, channel] : contents.Channels)
     {
-        const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
-        const std::string node = Mcap::ValueOf(channel.Metadata, "rabit.node");
+        const Mcap::RecordedChannel described = Mcap::Describe(channel);
+        const std::string &node = described.Node;
+        const std::string &message = described.Message;
         const auto schema = contents.Schemas.find(channel.SchemaId);
         const auto life =
             std::find_if(Lives.begin(), Lives.end(),
                          [&given = channel](const KnowerLife &one) { return IsOf(given, one); });
-        if ((kind != "knew" && kind != "mirrored" && kind != "posted") || node.empty() || life == Lives.end())
+        // What came later was not known then.
+        if ((described.Kind != Mcap::ChannelKind::Mirrored && described.Kind != Mcap::ChannelKind::Posted) ||
+            node.empty() || life == Lives.end())
         {
             continue;
         }
-        const std::string message = kind == "knew" ? Mcap::ValueOf(channel.Metadata, "rabit.message")
-                                                   : WithoutNode(channel.Topic, node);
         const auto at = static_cast<std::size_t>(life - Lives.begin());
         const std::string type = schema == contents.Schemas.end() ? "" : schema->second.Name;
         const auto [stream, isNew] = known.try_emplace({at, node, message, type}, Streams.size());

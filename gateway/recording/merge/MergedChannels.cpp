@@ -2,18 +2,10 @@
 
 #include <utility>
 
+#include "recording/mcap/RecordedChannel.h"
+
 namespace Rabit::Merge
 {
-namespace
-{
-
-bool IsMirrored(const Mcap::Channel &channel)
-{
-    return Mcap::ValueOf(channel.Metadata, "rabit.kind") == "mirrored";
-}
-
-}  // namespace
-
 MergedChannels::MergedChannels(const Lives &lives, const MergePlan &plan, Mcap::McapWriter &writer)
     : _lives(lives), _plan(plan), _writer(writer)
 {
@@ -22,12 +14,11 @@ MergedChannels::MergedChannels(const Lives &lives, const MergePlan &plan, Mcap::
 std::string MergedChannels::TopicOf(std::size_t life, const Mcap::Channel &channel) const
 {
     const std::string recorder = _lives.All[life].Node + "/Recorder/";
-    if (Mcap::ValueOf(channel.Metadata, "rabit.kind") == "backfilled")
-    {
-        // The recording of its origin node may be here, too.
-        return recorder + "backfilled/" + channel.Topic;
-    }
-    return IsMirrored(channel) ? recorder + "knew/" + channel.Topic : channel.Topic;
+    const Mcap::ChannelKind kind = Mcap::Describe(channel).Kind;
+    return kind == Mcap::ChannelKind::Mirrored ? recorder + "knew/" + channel.Topic
+           // The recording of its origin may be here, too.
+           : kind == Mcap::ChannelKind::Backfilled ? recorder + "backfilled/" + channel.Topic
+                                                   : channel.Topic;
 }
 
 std::optional<MergedChannels::Made> MergedChannels::Of(std::size_t life, const Mcap::Contents &contents,
@@ -45,13 +36,14 @@ std::optional<MergedChannels::Made> MergedChannels::Of(std::size_t life, const M
             ? std::uint16_t{0}
             : SchemaOf(schema->second.Name, schema->second.Encoding, schema->second.Data);
     Mcap::TextMap metadata = original.Metadata;
-    if (IsMirrored(original))
+    const Mcap::RecordedChannel described = Mcap::Describe(original);
+    if (described.Kind == Mcap::ChannelKind::Mirrored)
     {
-        const std::string origin = Mcap::ValueOf(metadata, "rabit.node") + "/";
         metadata["rabit.kind"] = "knew";
-        metadata["rabit.message"] = original.Topic.compare(0, origin.size(), origin) == 0
-                                        ? original.Topic.substr(origin.size())
-                                        : original.Topic;
+    }
+    if (described.Kind == Mcap::ChannelKind::Mirrored || described.Kind == Mcap::ChannelKind::Backfilled)
+    {
+        metadata["rabit.message"] = described.Message;
     }
     const auto made = Make(life, number, TopicOf(life, original), original.MessageEncoding, metadata);
     if (!made)

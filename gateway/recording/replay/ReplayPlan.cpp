@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <optional>
-#include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "names/NamePattern.h"
+#include "recording/mcap/RecordedChannel.h"
 
 namespace Rabit::Replay
 {
@@ -33,58 +33,55 @@ std::string ThingOf(const ReplayStream &stream)
            stream.Peer + ' ' + (stream.What == ReplayStream::Kind::Queue ? stream.Type : "");
 }
 
-// `NODE/MESSAGE`.
-std::optional<std::pair<std::string, std::string>> SplitTopic(const std::string &topic)
-{
-    const std::size_t slash = topic.find('/');
-    if (slash == std::string::npos || !IsNodeName(topic.substr(0, slash)) ||
-        !IsMessageName(topic.substr(slash + 1)))
-    {
-        return std::nullopt;
-    }
-    return std::pair(topic.substr(0, slash), topic.substr(slash + 1));
-}
-
-bool FillQueue(const Mcap::Channel &channel, Candidate &candidate)
+bool FillQueue(const Mcap::Channel &channel, const Mcap::RecordedChannel &described, Candidate &candidate)
 {
     ReplayStream &stream = candidate.Stream;
-    const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
     const std::string peer = Mcap::ValueOf(channel.Metadata, "rabit.peer");
-    candidate.IsOwn = kind == "queue sent";
+    candidate.IsOwn = described.Kind == Mcap::ChannelKind::QueueSent;
     stream.What = ReplayStream::Kind::Queue;
-    stream.Recorder = Mcap::ValueOf(channel.Metadata, "rabit.node");
+    stream.Recorder = described.Node;
     stream.Node = candidate.IsOwn ? stream.Recorder : peer;
     stream.Peer = candidate.IsOwn ? peer : stream.Recorder;
     stream.Name = Mcap::ValueOf(channel.Metadata, "rabit.queue");
-    return (candidate.IsOwn || kind == "queue received") && IsNodeName(stream.Node) &&
-           IsNodeName(stream.Peer) && IsMessageName(stream.Name);
+    return IsNodeName(stream.Node) && IsNodeName(stream.Peer) && IsMessageName(stream.Name);
 }
 
-bool FillMessage(const Mcap::Channel &channel, const std::string &recorder, Candidate &candidate)
+bool FillMessage(const Mcap::Channel &channel, const Mcap::RecordedChannel &described,
+                 const std::string &recorder, Candidate &candidate)
 {
     ReplayStream &stream = candidate.Stream;
-    const std::string kind = Mcap::ValueOf(channel.Metadata, "rabit.kind");
-    // In a merged recording the metadata name the topics that a node had from others.
-    const auto topic = SplitTopic(kind == "knew" ? Mcap::ValueOf(channel.Metadata, "rabit.node") + "/" +
-                                                       Mcap::ValueOf(channel.Metadata, "rabit.message")
-                                                 : channel.Topic);
-    if (!topic)
-    {
-        return false;
-    }
-    stream.Node = topic->first;
-    stream.Name = topic->second;
+    stream.Node = described.Node;
+    stream.Name = described.Message;
     stream.Qos = Mcap::ValueOf(channel.Metadata, "rabit.qos");
-    candidate.IsOwn = kind == "posted";
+    candidate.IsOwn = described.Kind == Mcap::ChannelKind::Posted;
     candidate.IsPublished = stream.Qos != "none";
-    const std::string told = Mcap::ValueOf(channel.Metadata, "rabit.recorded_by");
-    stream.Recorder = candidate.IsOwn ? stream.Node : told.empty() ? recorder : told;
+    stream.Recorder = described.Recorder.empty() ? recorder : described.Recorder;
     if (stream.Type == FleetType)
     {
         stream.What = ReplayStream::Kind::Fleet;
-        return candidate.IsOwn;
     }
-    return kind != "recorder";
+    return IsNodeName(stream.Node) && IsMessageName(stream.Name) &&
+           (stream.What != ReplayStream::Kind::Fleet || candidate.IsOwn);
+}
+
+bool Fill(const Mcap::Channel &channel, const std::string &recorder, Candidate &candidate)
+{
+    const Mcap::RecordedChannel described = Mcap::Describe(channel);
+    switch (described.Kind)
+    {
+        case Mcap::ChannelKind::QueueSent:
+        case Mcap::ChannelKind::QueueReceived:
+            return FillQueue(channel, described, candidate);
+        case Mcap::ChannelKind::QueueRefused:
+        case Mcap::ChannelKind::Recorder:
+            return false;
+        case Mcap::ChannelKind::Posted:
+        case Mcap::ChannelKind::Mirrored:
+        case Mcap::ChannelKind::Backfilled:
+        case Mcap::ChannelKind::Other:
+            break;
+    }
+    return FillMessage(channel, described, recorder, candidate);
 }
 
 std::optional<Candidate> CandidateOf(const Mcap::Contents &contents, const Mcap::Channel &channel,
@@ -102,10 +99,7 @@ std::optional<Candidate> CandidateOf(const Mcap::Contents &contents, const Mcap:
     candidate.Stream.IdlText = schema->second.Data;
     const auto counted = contents.Statistics.ChannelMessageCounts.find(channel.Id);
     candidate.Messages = counted == contents.Statistics.ChannelMessageCounts.end() ? 0 : counted->second;
-    const bool isQueue = Mcap::ValueOf(channel.Metadata, "rabit.kind").starts_with("queue ");
-    return (isQueue ? FillQueue(channel, candidate) : FillMessage(channel, recorder, candidate))
-               ? std::optional(std::move(candidate))
-               : std::nullopt;
+    return Fill(channel, recorder, candidate) ? std::optional(std::move(candidate)) : std::nullopt;
 }
 
 bool IsSelected(const Candidate &candidate, const PlanSettings &settings)

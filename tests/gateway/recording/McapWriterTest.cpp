@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "MemoryFile.h"
@@ -131,6 +132,31 @@ TEST(McapWriter, BeginsAChunkWhenOneIsFull)
     ASSERT_EQ(contents.Chunks.size(), 3U);
     EXPECT_LE(contents.Chunks[0].UncompressedSize, McapWriter::ChunkSize + 100);
     EXPECT_EQ(contents.Statistics.ChunkCount, 3U);
+}
+
+// A reader of a file that grows takes what it has for complete up to the chunk before the last.
+TEST(McapWriter, WritesSmallMessagesBeforeLargeOnesThatCameAfterThem)
+{
+    MemoryFile file;
+    McapWriter writer(file, {"", "", false});
+    const std::uint16_t channel = *writer.AddChannel(0, "a", "json");
+    const Bytes large(McapWriter::LargeChunkSize / 2);
+    for (std::uint64_t time = 1; time <= 6; ++time)
+    {
+        writer.Add({channel, 0, 10 * time, 10 * time, Bytes(10)});
+        writer.Add({channel, 0, 10 * time + 5, 10 * time + 5, large});
+    }
+    writer.Finish();
+    std::uint64_t newest = 0;
+    for (const ChunkIndex &chunk : ReadContents(file).Chunks)
+    {
+        if (chunk.UncompressedSize < McapWriter::LargeMessage)
+        {
+            EXPECT_GT(chunk.StartTime, newest)
+                << "large messages that came after these were written before them";
+        }
+        newest = std::max(newest, chunk.EndTime);
+    }
 }
 
 }  // namespace

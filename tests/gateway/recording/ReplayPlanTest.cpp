@@ -69,6 +69,32 @@ TEST_F(ReplayPlanTest, WhatANodePublishedAndWhatItHadFromOthersIsPlayed)
     EXPECT_EQ(plan.Streams.at(0).IdlText, "text");
 }
 
+TEST_F(ReplayPlanTest, PostsThatCameLaterArePlayedWithThoseThatCameLive)
+{
+    PlayedFile &file = AddFile("ground");
+    file.Mirrored("uav1", "Pose");
+    file.Channel("uav1/Pose", {{"rabit.kind", "backfilled"}, {"rabit.node", "uav1"}});
+    const ReplayPlan plan = Plan();
+    EXPECT_THAT(NamesOf(plan), ElementsAre("uav1/Pose<ground"));
+    EXPECT_EQ(plan.Channels[0].size(), 2U);
+}
+
+TEST_F(ReplayPlanTest, PostsThatCameLaterArePlayedFromAMergedRecording)
+{
+    PlayedFile &file = AddFile("");
+    const PlayedFile::TextMap common = {
+        {"rabit.node", "uav1"}, {"rabit.message", "Pose"}, {"rabit.recorded_by", "ground"}};
+    PlayedFile::TextMap knew = common;
+    knew["rabit.kind"] = "knew";
+    PlayedFile::TextMap backfilled = common;
+    backfilled["rabit.kind"] = "backfilled";
+    file.Channel("ground/Recorder/knew/uav1/Pose", knew);
+    file.Channel("ground/Recorder/backfilled/uav1/Pose", backfilled);
+    const ReplayPlan plan = Plan();
+    EXPECT_THAT(NamesOf(plan), ElementsAre("uav1/Pose<ground"));
+    EXPECT_EQ(plan.Channels[0].size(), 2U);
+}
+
 TEST_F(ReplayPlanTest, WhatANodeKeptToItselfIsPlayedIfItIsNamed)
 {
     AddFile("uav1").Posted("uav1", "Plan", "none");

@@ -26,7 +26,7 @@ public:
 
     struct QueueMessage
     {
-        std::string_view Node;   // the other one
+        std::string_view Node;   // the other one; empty: a program that is no node (foreign topics)
         std::string_view Queue;  // the destination queue, here or there
         std::string_view Type;   // IDL name
         // Identifies a sent message among all that this gateway sends; 0 if it was refused.
@@ -54,7 +54,7 @@ public:
         std::span<const std::uint8_t> Sample;
     };
     // A message of another node was posted here. Never two at once of one message.
-    virtual void Mirrored(const MirroredSample & /*sample*/) {}
+    virtual void Mirrored(const MirroredSample &sample) = 0;
 
     // Relates the source clock of another node, which its samples carry as source time, to this node's
     // monotonic clock.
