@@ -127,6 +127,10 @@ public:
             }
             else if (letter.Asked)
             {
+                if (!_config.Record || !MayRequestPosts(_config, letter.Node))
+                {
+                    letter.Asked->had.clear();  // all that it gets is a refusal
+                }
                 static_cast<void>(_questions.Add(letter.Node, std::move(*letter.Asked)));
             }
         }
@@ -233,6 +237,14 @@ private:
                                     std::to_string(count) +
                                         " posts were not recorded, since their times are " +
                                         "not credible; compare the clocks of the nodes"});
+            }
+            if (const std::uint64_t count = _streams->TooLarge(); count > 0)
+            {
+                problems.push_back(
+                    {"backfill", "",
+                     std::to_string(count) +
+                         " posts were not recorded, since they are larger than three fourths of " +
+                         "`record: memory`"});
             }
         }
         const std::lock_guard lock(_told->Mutex);

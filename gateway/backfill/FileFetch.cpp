@@ -123,6 +123,10 @@ std::span<const std::uint8_t> FileFetch::Answered(const Answer &answer, Duration
     if (answer.from != _have || answer.bytes.size() > _facts->Size - _have)
     {
         _repeated += answer.bytes.size();
+        if (isAsked && answer.from > _have && !answer.bytes.empty())
+        {
+            AskAgain(now);  // answers come in order: the one before this is lost
+        }
         return {};
     }
     _have += answer.bytes.size();

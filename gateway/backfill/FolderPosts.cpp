@@ -5,6 +5,7 @@
 #include <set>
 
 #include "backfill/RecordedSeries.h"
+#include "recording/mcap/RecordedChannel.h"
 
 namespace Rabit::Backfill
 {
@@ -23,8 +24,8 @@ FolderPosts::FolderPosts(const std::string &folder, const std::string &node)
       _index(folder, node,
              [node](const Mcap::Channel &channel)
              {
-                 return TextAt(channel.Metadata, "rabit.kind") == "posted" &&
-                        TextAt(channel.Metadata, "rabit.node") == node;
+                 const Mcap::RecordedChannel described = Mcap::Describe(channel);
+                 return described.Kind == Mcap::ChannelKind::Posted && described.Node == node;
              })
 {
 }
@@ -48,9 +49,9 @@ std::map<std::uint64_t, std::vector<FolderPosts::Part>> FolderPosts::PartsOf(con
         const auto clock = file.Metadata.find("rabit.clock");
         std::uint64_t incarnation = 0;
         std::int64_t sourceToLog = 0;
-        if (!file.IsOwn || !IsPast(file) || clock == file.Metadata.end() ||
-            !ReadNumber(TextAt(clock->second, "incarnation"), incarnation) ||
-            !ReadNumber(TextAt(clock->second, "source_to_log_ns"), sourceToLog))
+        if (!file.IsOwn || clock == file.Metadata.end() ||
+            !ReadNumber(Mcap::ValueOf(clock->second, "incarnation"), incarnation) ||
+            !ReadNumber(Mcap::ValueOf(clock->second, "source_to_log_ns"), sourceToLog))
         {
             continue;
         }
@@ -64,13 +65,22 @@ std::map<std::uint64_t, std::vector<FolderPosts::Part>> FolderPosts::PartsOf(con
         }
         for (const RecordingIndex::Piece &piece : file.Pieces)
         {
-            if (channels.contains(piece.Channel))
+            const bool isUnknown =
+                !file.Channels.contains(piece.Channel) && !file.OtherChannels.contains(piece.Channel);
+            if (channels.contains(piece.Channel) || isUnknown)
             {
-                parts[incarnation].push_back({&file, &piece, sourceToLog});
+                parts[incarnation].push_back({&file, &piece, sourceToLog, isUnknown});
             }
         }
     }
     return parts;
+}
+
+RecordingIndex::Access FolderPosts::Visit(const Part &part,
+                                          const std::function<void(const Mcap::Message &message)> &visit)
+{
+    return part.IsOfUnknownChannel ? RecordingIndex::Access::Damaged
+                                   : _index.Visit(*part.File, *part.Piece, visit);
 }
 
 // The first message may have been posted long before the recording began.
@@ -82,10 +92,8 @@ Stamp FolderPosts::FirstStamp(const Part &part)
     const auto known = placed.first;
     if (placed.second)
     {
-        _index.Visit(
-            *part.File, *part.Piece,
-            [&known, &part](const Mcap::Message &message)
-            { known->second = std::min(known->second, StampAt(message.PublishTime, part.SourceToLog)); });
+        Visit(part, [&known, &part](const Mcap::Message &message)
+              { known->second = std::min(known->second, StampAt(message.PublishTime, part.SourceToLog)); });
     }
     return std::min(known->second, StampAt(part.Piece->FirstLog, part.SourceToLog));
 }
@@ -128,7 +136,7 @@ std::vector<PostsCodec::Span> FolderPosts::Spans(const std::string &message, std
 PostStore::Found FolderPosts::Read(const std::string &message, std::uint64_t incarnation, Range range,
                                    const std::vector<Stamp> &had, std::size_t most)
 {
-    Found found{.First = range.First, .Posts = {}, .IsReadable = true};
+    Found found{.First = range.First, .Posts = {}};
     std::vector<Part> parts = std::move(PartsOf(message)[incarnation]);
     // The first part may hold a post from before the recording: it is always looked at.
     std::vector<Part> chosen;
@@ -152,38 +160,75 @@ PostStore::Found FolderPosts::Read(const std::string &message, std::uint64_t inc
         first = posts.end();
         while (first != posts.begin())
         {
-            const std::size_t size = std::prev(first)->second.Bytes.size();
+            const std::size_t size = std::prev(first)->second.Bytes.size() + PostOverhead;
             if (bytes > 0 && bytes + size > most)
             {
                 return false;
             }
-            bytes += std::max<std::size_t>(size, 1);
+            bytes += size;
             --first;
         }
         return true;
     };
+    Range damaged;  // the newest part that is
     bool goesOn = true;
     for (std::size_t i = 0; i < chosen.size() && goesOn; ++i)
     {
         const Part &part = chosen[i];
-        const bool isRead = _index.Visit(
-            *part.File, *part.Piece,
-            [&](const Mcap::Message &one)
+        const RecordingIndex::Access access =
+            Visit(part,
+                  [&](const Mcap::Message &one)
+                  {
+                      const std::int64_t time = static_cast<std::int64_t>(one.PublishTime) - part.SourceToLog;
+                      const Stamp stamp = StampOf(time);
+                      if (range.Contains(stamp) && !std::binary_search(had.begin(), had.end(), stamp))
+                      {
+                          posts.try_emplace(stamp, Post{time, {one.Data.begin(), one.Data.end()}});
+                      }
+                  });
+        if (access == RecordingIndex::Access::Failed)
+        {
+            return {.First = range.First, .Posts = {}, .Is = Found::Result::NotNow};
+        }
+        if (access == RecordingIndex::Access::Damaged)
+        {
+            // It begins behind the last post before it, since only the index tells what was in it.
+            const Stamp before =
+                i + 1 < chosen.size()
+                    ? std::min(chosen[i + 1].LastStamp() + 1, StampAt(part.Piece->FirstLog, part.SourceToLog))
+                    : range.First;
+            const Range lost{std::max(range.First, before), std::min(range.End, part.LastStamp() + 1)};
+            if (lost.IsEmpty())
             {
-                const std::int64_t time = static_cast<std::int64_t>(one.PublishTime) - part.SourceToLog;
-                const Stamp stamp = StampOf(time);
-                if (range.Contains(stamp) && !std::binary_search(had.begin(), had.end(), stamp))
-                {
-                    posts.try_emplace(stamp, Post{time, {one.Data.begin(), one.Data.end()}});
-                }
-            });
-        found.IsReadable = found.IsReadable && isRead;
+                continue;  // it was chosen for the time between the last post and the record
+            }
+            damaged = lost;
+            break;
+        }
         // Enough, if the parts that are left hold only older posts.
         goesOn = fit() || (i + 1 < chosen.size() && chosen[i + 1].LastStamp() >= first->first);
     }
     if (!fit())
     {
         found.First = first->first;
+    }
+    // A post is recorded a moment later: the last ones of that time may be in the next part.
+    if (const auto behind = posts.lower_bound(damaged.First);
+        behind != posts.end() && behind->first < damaged.End)
+    {
+        damaged.End = behind->first;
+    }
+    // An answer is about one range. What is behind the damaged part comes first, then the part, then the
+    // rest.
+    const bool isWithin = damaged.End > found.First;
+    if (isWithin && damaged.End == range.End)
+    {
+        return {.First = damaged.First, .Posts = {}, .Is = Found::Result::Damaged};
+    }
+    if (isWithin)
+    {
+        found.First = damaged.End;
+        first = posts.lower_bound(damaged.End);
     }
     for (; first != posts.end(); ++first)
     {

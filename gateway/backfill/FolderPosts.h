@@ -21,8 +21,8 @@ public:
 
     FolderPosts(const std::string &folder, const std::string &node);
 
-    // The present incarnation, whose recording is still being written, and the log time now: files with
-    // later times, of a clock that was wrong, are left out.
+    // The present incarnation, whose recording is still being written, and the log time now: files with later
+    // times, of a clock that was wrong, do not count for the age of the others.
     void SetPresent(std::uint64_t incarnation, std::uint64_t now)
     {
         _incarnation = incarnation;
@@ -32,6 +32,7 @@ public:
     std::vector<PostsCodec::Span> Spans(const std::string &message, std::uint64_t last) override;
     Found Read(const std::string &message, std::uint64_t incarnation, Range range,
                const std::vector<Stamp> &had, std::size_t most) override;
+    std::uint64_t Present() const override { return _incarnation; }
 
 private:
     // The pieces of one message in one file, and the clock of that file.
@@ -40,11 +41,15 @@ private:
         const RecordingIndex::File *File = nullptr;
         const RecordingIndex::Piece *Piece = nullptr;
         std::int64_t SourceToLog = 0;
+        // The chunk that says which message the channel has is damaged: these may be posts of any.
+        bool IsOfUnknownChannel = false;
 
         Stamp LastStamp() const;
     };
     std::map<std::uint64_t, std::vector<Part>> PartsOf(const std::string &message) const;
     Stamp FirstStamp(const Part &part);
+    RecordingIndex::Access Visit(const Part &part,
+                                 const std::function<void(const Mcap::Message &message)> &visit);
 
     const std::string _node;
     RecordingIndex _index;

@@ -100,35 +100,52 @@ Ledger::Gap Ledger::GapOf(const Series &series, const Track &track, Range gap)
     return {series, gap, {first, end}};
 }
 
+std::optional<Ledger::Gap> Ledger::NewestGapOf(const Series &series, const Track &track, bool isPresent,
+                                               bool andNewest)
+{
+    if (!track.Span)
+    {
+        return std::nullopt;
+    }
+    Range within{std::max(track.Span->First, track.Floor), track.Span->End};
+    auto gap = track.Whole.NewestGap(within);
+    const bool isNewest = gap && isPresent && gap->End == track.Span->End;
+    if (isNewest && !andNewest)
+    {
+        within.End = gap->First;
+        gap = track.Whole.NewestGap(within);
+    }
+    if (!gap)
+    {
+        return std::nullopt;
+    }
+    Gap found = GapOf(series, track, *gap);
+    found.IsNewest = isNewest && andNewest;
+    return found;
+}
+
 std::optional<Ledger::Gap> Ledger::NewestGap(const std::string &node, const std::string &message,
-                                             bool andNewest) const
+                                             std::uint64_t present, bool andNewest) const
 {
     const std::lock_guard lock(_mutex);
+    if (const auto now = _tracks.find({node, message, present}); now != _tracks.end())
+    {
+        if (auto gap = NewestGapOf(now->first, now->second, true, andNewest))
+        {
+            return gap;
+        }
+    }
     const auto begin = _tracks.lower_bound({node, message, 0});
     auto track = _tracks.upper_bound({node, message, std::numeric_limits<std::uint64_t>::max()});
-    bool isLast = true;
     while (track != begin)
     {
         --track;
-        const auto &[series, state] = *track;
-        const bool wasLast = std::exchange(isLast, false);
-        if (!state.Span)
+        if (track->first.Incarnation != present)
         {
-            continue;
-        }
-        Range within{std::max(state.Span->First, state.Floor), state.Span->End};
-        auto gap = state.Whole.NewestGap(within);
-        const bool isNewest = gap && wasLast && gap->End == state.Span->End;
-        if (isNewest && !andNewest)
-        {
-            within.End = gap->First;
-            gap = state.Whole.NewestGap(within);
-        }
-        if (gap)
-        {
-            Gap found = GapOf(series, state, *gap);
-            found.IsNewest = isNewest && andNewest;
-            return found;
+            if (auto gap = NewestGapOf(track->first, track->second, false, andNewest))
+            {
+                return gap;
+            }
         }
     }
     return std::nullopt;

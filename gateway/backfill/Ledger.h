@@ -46,8 +46,11 @@ public:
     };
     // Stamps in Gap::Had. A longer gap is returned from its end.
     static constexpr std::size_t MostHad = 512;
-    // Returns the newest gap of that message; empty: none. The gap that IsNewest is left out if `!andNewest`.
-    std::optional<Gap> NewestGap(const std::string &node, const std::string &message, bool andNewest) const;
+    // Returns the newest gap of that message; empty: none. The gap that IsNewest, which is one of the node's
+    // present incarnation, is left out if `!andNewest`. The present incarnation comes first: its number may
+    // be lower than former ones, after the node's clock was put back.
+    std::optional<Gap> NewestGap(const std::string &node, const std::string &message, std::uint64_t present,
+                                 bool andNewest) const;
 
     // Number of stamps kept, of all series.
     std::size_t Stamps() const;
@@ -63,6 +66,8 @@ private:
 
     Track *FindOrAdd(const Series &series);
     static Gap GapOf(const Series &series, const Track &track, Range gap);
+    static std::optional<Gap> NewestGapOf(const Series &series, const Track &track, bool isPresent,
+                                          bool andNewest);
 
     mutable std::mutex _mutex;
     std::map<Series, Track> _tracks;

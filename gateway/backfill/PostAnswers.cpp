@@ -35,11 +35,13 @@ Answer PostAnswers::Of(const std::string &node, const Question &question)
     return answer;
 }
 
-// Of an incarnation that is no longer there, nothing is there to be missed.
+// Of a former incarnation without posts, nothing is there to be missed. The present one may not have written
+// its first ones yet.
 void PostAnswers::AnswerPosts(const Question &question, Answer &answer)
 {
     const auto had = PostsCodec::DecodeStamps(question.had, question.from);
-    if (!had || question.from > question.to)
+    // As long as it is not known which incarnation is the present one, nothing can be said to be over.
+    if (!had || question.from > question.to || _store.Present() == 0)
     {
         answer.result = Result::FAILED;
         return;
@@ -50,16 +52,50 @@ void PostAnswers::AnswerPosts(const Question &question, Answer &answer)
                                    { return one.Incarnation == question.incarnation; });
     if (span == spans.end())
     {
+        answer.to = question.incarnation == _store.Present() ? question.from : question.to;
         return;
     }
     // Of an incarnation that is over, nothing comes behind the last post.
     const Stamp end = span->IsOver ? question.to : std::min(question.to, span->Stamps.End);
     const Range range{question.from, std::max(question.from, end)};
-    PostStore::Found found = _store.Read(question.name, question.incarnation, range, *had, LargestAnswer);
-    answer.result = found.IsReadable ? Result::OK : Result::FAILED;
+    const std::size_t most = question.most == 0
+                                 ? LargestAnswer
+                                 : std::clamp<std::size_t>(question.most, SmallestAnswer, LargestAnswer);
+    if (question.offset > 0 && _large.Name == question.name && _large.Incarnation == question.incarnation &&
+        _large.Of == question.from)
+    {
+        answer.to = range.End;
+        AnswerPart(question, most, answer);
+        return;
+    }
+    PostStore::Found found = _store.Read(question.name, question.incarnation, range, *had, most);
+    answer.result = found.Is == PostStore::Found::Result::Readable ? Result::OK : Result::FAILED;
+    answer.size = found.Is == PostStore::Found::Result::Damaged ? NeverReadable : 0;
     answer.from = found.First;
     answer.to = range.End;
+    if (found.Posts.size() == 1 && (found.Posts.front().Bytes.size() > most || question.offset > 0))
+    {
+        const Stamp stamp = StampOf(found.Posts.front().SourceTime);
+        _large = {question.name, question.incarnation, stamp, PostsCodec::EncodePosts(found.Posts, stamp)};
+        AnswerPart(question, most, answer);
+        return;
+    }
     answer.bytes = PostsCodec::EncodePosts(found.Posts, found.First);
+}
+
+// Each part is cut from the same bytes, whatever was asked before. After the last one they are given up.
+void PostAnswers::AnswerPart(const Question &question, std::size_t most, Answer &answer)
+{
+    answer.from = _large.Of;
+    answer.size = _large.Bytes.size();
+    answer.offset = std::min<std::uint64_t>(question.offset, _large.Bytes.size());
+    const auto begin = _large.Bytes.begin() + static_cast<std::ptrdiff_t>(answer.offset);
+    const auto left = static_cast<std::size_t>(_large.Bytes.end() - begin);
+    answer.bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(std::min(most, left)));
+    if (left <= most)
+    {
+        _large = {};
+    }
 }
 
 }  // namespace Rabit::Backfill

@@ -47,8 +47,12 @@ void ReadLedger(const std::string &folder, const std::string &node, std::uint64_
         }
         for (const RecordingIndex::Piece &piece : file.Pieces)
         {
-            const Mcap::Channel &channel = file.Channels.at(piece.Channel);
-            const auto known = SeriesIn(channel);
+            const auto channel = file.Channels.find(piece.Channel);
+            if (channel == file.Channels.end())
+            {
+                continue;  // of a damaged part: its posts are asked for again
+            }
+            const auto known = SeriesIn(channel->second);
             index.Visit(file, piece,
                         [&](const Mcap::Message &message)
                         {

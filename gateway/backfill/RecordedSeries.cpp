@@ -1,27 +1,22 @@
 #include "backfill/RecordedSeries.h"
 
+#include "recording/mcap/RecordedChannel.h"
+
 namespace Rabit::Backfill
 {
 
-std::string TextAt(const Mcap::TextMap &values, const std::string &key)
-{
-    const auto found = values.find(key);
-    return found == values.end() ? "" : found->second;
-}
-
 std::optional<RecordedSeries> SeriesIn(const Mcap::Channel &channel)
 {
-    const std::string kind = TextAt(channel.Metadata, "rabit.kind");
+    const Mcap::RecordedChannel described = Mcap::Describe(channel);
     RecordedSeries series;
-    series.Of.Node = TextAt(channel.Metadata, "rabit.node");
-    if ((kind != "mirrored" && kind != "backfilled") ||
-        !ReadNumber(TextAt(channel.Metadata, "rabit.origin_incarnation"), series.Of.Incarnation) ||
-        !ReadNumber(TextAt(channel.Metadata, "rabit.source_to_log_ns"), series.SourceToLog) ||
-        !channel.Topic.starts_with(series.Of.Node + "/"))
+    if ((described.Kind != Mcap::ChannelKind::Mirrored && described.Kind != Mcap::ChannelKind::Backfilled) ||
+        !ReadNumber(Mcap::ValueOf(channel.Metadata, "rabit.origin_incarnation"), series.Of.Incarnation) ||
+        !ReadNumber(Mcap::ValueOf(channel.Metadata, "rabit.source_to_log_ns"), series.SourceToLog))
     {
         return std::nullopt;
     }
-    series.Of.Message = channel.Topic.substr(series.Of.Node.size() + 1);
+    series.Of.Node = described.Node;
+    series.Of.Message = described.Message;
     return series;
 }
 

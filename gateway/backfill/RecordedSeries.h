@@ -20,9 +20,6 @@ bool ReadNumber(const std::string &text, Number &number)
     return error == std::errc() && end == text.data() + text.size();
 }
 
-// Returns the text of that key; empty if there is none.
-std::string TextAt(const Mcap::TextMap &values, const std::string &key);
-
 // The series of a channel that SeriesStreams has written, and its clock: what is to be added to source time
 // to get the publish times of its messages.
 struct RecordedSeries

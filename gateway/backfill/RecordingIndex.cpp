@@ -8,7 +8,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "recording/RecordingName.h"
 #include "recording/mcap/ChunkReader.h"
+#include "recording/mcap/McapContents.h"
 #include "recording/mcap/RecordCodec.h"
 #include "recording/mcap/RecordScanner.h"
 
@@ -20,27 +22,26 @@ namespace
 // A record with a longer content, but for a chunk, is not looked at.
 constexpr std::uint64_t LargestLookedAt = 16U << 20;
 
-bool IsNamedAs(const std::string &file, const std::string &node)
-{
-    return file.starts_with(node + "_") && file.ends_with(".mcap");
-}
-
 }  // namespace
 
 void RecordingIndex::Refresh(bool isOver)
 {
     std::set<std::string> present;
     std::error_code error;
+    std::uint64_t newest = 0;
     const auto oldest = std::filesystem::file_time_type::clock::now() - LongestKept;
     for (const auto &entry : std::filesystem::directory_iterator(_folder, error))
     {
         const std::string name = entry.path().filename().string();
-        if (IsNamedAs(name, _node) && entry.is_regular_file(error) && !entry.is_symlink(error) &&
+        const auto named = RecordingName::Of(name, _node);
+        if (named && entry.is_regular_file(error) && !entry.is_symlink(error) &&
             entry.last_write_time(error) >= oldest)
         {
             present.insert(name);
             File &file = _files[name];
             file.Path = entry.path().string();
+            file.Number = named->Number;
+            newest = std::max(newest, named->Number);
         }
     }
     std::erase_if(_files, [&present](const auto &file) { return !present.contains(file.first); });
@@ -48,7 +49,7 @@ void RecordingIndex::Refresh(bool isOver)
     {
         if (!file.IsOver)
         {
-            ReadOn(file, !isOver && name == _files.rbegin()->first);
+            ReadOn(file, !isOver && file.Number == newest);
         }
     }
 }
@@ -65,16 +66,30 @@ try
     std::uint64_t whole = offset;
     std::vector<Mcap::Bytes> indexes;
     std::uint64_t endTime = 0;
+    // False: the chunk cannot be read now.
     const auto takeChunk = [&]
     {
+        const bool areKnown = std::all_of(indexes.begin(), indexes.end(),
+                                          [&file](const Mcap::Bytes &index)
+                                          {
+                                              const auto read = Mcap::Read<Mcap::MessageIndex>(index);
+                                              return !read || file.Channels.contains(read->ChannelId) ||
+                                                     file.OtherChannels.contains(read->ChannelId);
+                                          });
+        if (!areKnown && LearnChannels(file, chunk, chunkLength) == Access::Failed)
+        {
+            return false;
+        }
         for (const Mcap::Bytes &index : indexes)
         {
             TakeIndex(file, chunk, chunkLength, index);
         }
-        file.NewestLog = std::max(file.NewestLog, endTime);
+        file.NewestLog = std::max(file.NewestLog, file.LastChunkEnd);
+        file.LastChunkEnd = std::max(file.LastChunkEnd, endTime);
         indexes.clear();
         chunkLength = 0;
         whole = offset;
+        return true;
     };
     while (offset + bytes.size() <= source.Size() && source.Read(offset, bytes))
     {
@@ -84,9 +99,9 @@ try
             break;
         }
         const auto code = static_cast<Mcap::Opcode>(head.Code);
-        if (chunkLength > 0 && code != Mcap::Opcode::MessageIndex)
+        if (chunkLength > 0 && code != Mcap::Opcode::MessageIndex && !takeChunk())
         {
-            takeChunk();
+            break;
         }
         Mcap::Bytes content;
         if ((code == Mcap::Opcode::MessageIndex || code == Mcap::Opcode::Metadata) &&
@@ -127,7 +142,15 @@ try
     }
     if (chunkLength > 0 && !mayGrow)
     {
-        takeChunk();
+        static_cast<void>(takeChunk());
+    }
+    if (file.IsOver)
+    {
+        LearnFromSummary(file);
+    }
+    if (file.IsOver || !mayGrow)
+    {
+        file.NewestLog = std::max(file.NewestLog, file.LastChunkEnd);
     }
     file.ReadUntil = whole;
     const auto own = file.Metadata.find("rabit.file");
@@ -147,45 +170,69 @@ void RecordingIndex::TakeIndex(File &file, std::uint64_t chunk, std::uint64_t le
         return;
     }
     const std::uint16_t channel = index->ChannelId;
-    if (!file.Channels.contains(channel) && !file.OtherChannels.contains(channel))
-    {
-        LearnChannels(file, chunk, length);
-        if (!file.Channels.contains(channel))
-        {
-            file.OtherChannels.insert(channel);
-        }
-    }
-    if (file.Channels.contains(channel))
+    if (!file.OtherChannels.contains(channel))
     {
         const auto [first, last] = std::minmax_element(index->Entries.begin(), index->Entries.end());
         file.Pieces.push_back({chunk, length, channel, first->first, last->first});
     }
 }
 
-void RecordingIndex::LearnChannels(File &file, std::uint64_t chunk, std::uint64_t length)
+void RecordingIndex::Learn(File &file, const Mcap::Channel &channel) const
 {
-    const Mcap::Bytes *records = Open(file.Path, chunk, length);
+    if (_wants(channel))
+    {
+        file.Channels.emplace(channel.Id, channel);
+    }
+    else
+    {
+        file.OtherChannels.insert(channel.Id);
+    }
+}
+
+RecordingIndex::Access RecordingIndex::LearnChannels(File &file, std::uint64_t chunk, std::uint64_t length)
+{
+    Access access = Access::Done;
+    const Mcap::Bytes *records = Open(file.Path, chunk, length, access);
     if (records == nullptr)
     {
-        return;
+        return access;
     }
     Mcap::RecordIterator iterator(*records);
     while (const auto record = iterator.Next())
     {
         if (record->Code == static_cast<std::uint8_t>(Mcap::Opcode::Channel))
         {
-            auto channel = Mcap::Read<Mcap::Channel>(record->Content);
-            if (channel && _wants(*channel))
+            if (const auto channel = Mcap::Read<Mcap::Channel>(record->Content))
             {
-                const std::uint16_t id = channel->Id;
-                file.Channels.emplace(id, std::move(*channel));
+                Learn(file, *channel);
             }
         }
     }
+    return Access::Done;
 }
 
-const Mcap::Bytes *RecordingIndex::Open(const std::string &path, std::uint64_t offset, std::uint64_t length)
+// The summary of a file that was ended describes all channels once more.
+void RecordingIndex::LearnFromSummary(File &file)
 {
+    const auto isKnown = [&file](const Piece &piece)
+    { return file.Channels.contains(piece.Channel) || file.OtherChannels.contains(piece.Channel); };
+    if (std::all_of(file.Pieces.begin(), file.Pieces.end(), isKnown))
+    {
+        return;
+    }
+    Mcap::FileSource source(file.Path);
+    for (const auto &[id, channel] : Mcap::ReadContents(source).Channels)
+    {
+        Learn(file, channel);
+    }
+    std::erase_if(file.Pieces,
+                  [&file](const Piece &piece) { return file.OtherChannels.contains(piece.Channel); });
+}
+
+const Mcap::Bytes *RecordingIndex::Open(const std::string &path, std::uint64_t offset, std::uint64_t length,
+                                        Access &access)
+{
+    access = Access::Damaged;
     const auto known =
         std::find_if(_open.begin(), _open.end(),
                      [&](const OpenChunk &chunk) { return chunk.Offset == offset && chunk.Path == path; });
@@ -203,6 +250,7 @@ const Mcap::Bytes *RecordingIndex::Open(const std::string &path, std::uint64_t o
         Mcap::Bytes bytes(static_cast<std::size_t>(length));
         if (!source.Read(offset, bytes))
         {
+            access = Access::Failed;
             return nullptr;
         }
         const auto chunk = Mcap::Read<Mcap::Chunk>(Mcap::ByteView(bytes).subspan(Mcap::RecordHead));
@@ -216,6 +264,7 @@ const Mcap::Bytes *RecordingIndex::Open(const std::string &path, std::uint64_t o
     }
     catch (const std::runtime_error &)
     {
+        access = Access::Failed;
         return nullptr;
     }
     if (_open.size() > MostOpenChunks)
@@ -225,13 +274,14 @@ const Mcap::Bytes *RecordingIndex::Open(const std::string &path, std::uint64_t o
     return &_open.back().Records;
 }
 
-bool RecordingIndex::Visit(const File &file, const Piece &piece,
-                           const std::function<void(const Mcap::Message &message)> &visit)
+RecordingIndex::Access RecordingIndex::Visit(const File &file, const Piece &piece,
+                                             const std::function<void(const Mcap::Message &message)> &visit)
 {
-    const Mcap::Bytes *records = Open(file.Path, piece.Offset, piece.Length);
+    Access access = Access::Done;
+    const Mcap::Bytes *records = Open(file.Path, piece.Offset, piece.Length, access);
     if (records == nullptr)
     {
-        return false;
+        return access;
     }
     Mcap::RecordIterator iterator(*records);
     while (const auto record = iterator.Next())
@@ -245,7 +295,7 @@ bool RecordingIndex::Visit(const File &file, const Piece &piece,
             }
         }
     }
-    return true;
+    return Access::Done;
 }
 
 }  // namespace Rabit::Backfill

@@ -45,14 +45,20 @@ public:
     struct File
     {
         std::string Path;
+        std::uint64_t Number = 0;  // in its name
         std::uint64_t ReadUntil = 0;
         bool IsOver = false;                              // nothing more will come
         bool IsOwn = false;                               // of this node
         std::map<std::uint16_t, Mcap::Channel> Channels;  // that are wanted
-        std::set<std::uint16_t> OtherChannels;
-        std::map<std::string, Mcap::TextMap> Metadata;  // the last of each name
+        std::set<std::uint16_t> OtherChannels;            // that are not
+        std::map<std::string, Mcap::TextMap> Metadata;    // the last of each name
+        // Of wanted channels, and of those that are in neither set, since the chunk that describes them is
+        // damaged.
         std::vector<Piece> Pieces;
-        std::uint64_t NewestLog = 0;  // of all channels
+        // Of all channels: the file has all messages up to this one. A file that grows has chunks of small
+        // and of large messages in turns, and perhaps not yet the other one of the last two.
+        std::uint64_t NewestLog = 0;
+        std::uint64_t LastChunkEnd = 0;  // log time
     };
 
     // Looks for new files, and reads what has come. Files that are gone, and old ones, are forgotten. The
@@ -61,10 +67,15 @@ public:
     void Refresh(bool isOver = false);
     // By their names, the oldest first; only those of this node count.
     const std::map<std::string, File> &Files() const { return _files; }
-    // Calls `visit` with each message of that piece; false if the chunk cannot be read, as if its file was
-    // removed.
-    bool Visit(const File &file, const Piece &piece,
-               const std::function<void(const Mcap::Message &message)> &visit);
+    enum class Access
+    {
+        Done,
+        Damaged,  // the chunk can never be read
+        Failed    // the file cannot be opened or read now, as if it was removed
+    };
+    // Calls `visit` with each message of that piece.
+    Access Visit(const File &file, const Piece &piece,
+                 const std::function<void(const Mcap::Message &message)> &visit);
 
 private:
     struct OpenChunk
@@ -76,9 +87,12 @@ private:
 
     void ReadOn(File &file, bool mayGrow);
     void TakeIndex(File &file, std::uint64_t chunk, std::uint64_t length, Mcap::ByteView content);
-    void LearnChannels(File &file, std::uint64_t chunk, std::uint64_t length);
-    // Null if it cannot be read. Valid until the next call.
-    const Mcap::Bytes *Open(const std::string &path, std::uint64_t offset, std::uint64_t length);
+    Access LearnChannels(File &file, std::uint64_t chunk, std::uint64_t length);
+    void LearnFromSummary(File &file);
+    void Learn(File &file, const Mcap::Channel &channel) const;
+    // Null if it cannot be read, with the reason. Valid until the next call.
+    const Mcap::Bytes *Open(const std::string &path, std::uint64_t offset, std::uint64_t length,
+                            Access &access);
 
     const std::string _folder;
     const std::string _node;

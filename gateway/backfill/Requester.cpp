@@ -83,8 +83,9 @@ const Requester::Asked *Requester::OpenQuestion(const Node &node)
     return nullptr;
 }
 
-std::optional<Requester::Asked> Requester::Next(const std::string &node, const std::string &message,
-                                                const Wanted &wanted, Duration now) const
+std::optional<Requester::Asked> Requester::Next(const std::string &node, std::uint64_t present,
+                                                const std::string &message, const Wanted &wanted,
+                                                Duration now) const
 {
     if (wanted.Open || now < wanted.NotBefore)
     {
@@ -99,13 +100,22 @@ std::optional<Requester::Asked> Requester::Next(const std::string &node, const s
         asked.What.to = static_cast<std::uint64_t>(_last.count());
         return asked;
     }
-    const auto gap = _ledger.NewestGap(node, message, now >= wanted.NextLook);
+    asked.What.kind = Kind::POSTS;
+    asked.What.most = static_cast<std::uint32_t>(wanted.Most);
+    if (wanted.Large)
+    {
+        asked.What.incarnation = wanted.Large->Incarnation;
+        asked.What.from = wanted.Large->Covered.First;
+        asked.What.to = asked.What.from + 1;
+        asked.What.offset = wanted.Large->Bytes.size();
+        return asked;
+    }
+    const auto gap = _ledger.NewestGap(node, message, present, now >= wanted.NextLook);
     if (!gap)
     {
         return std::nullopt;
     }
     asked.LooksAtNewest = gap->IsNewest;
-    asked.What.kind = Kind::POSTS;
     asked.What.incarnation = gap->Of.Incarnation;
     asked.What.from = gap->Stamps.First;
     asked.What.to = gap->Stamps.End;
@@ -121,7 +131,7 @@ std::optional<Requester::Asking> Requester::NextOf(const std::string &name, Node
     {
         next = next == node.Messages.end() ? node.Messages.begin() : next;
         auto &[message, wanted] = *next;
-        if (std::optional<Asked> asked = Next(name, message, wanted, now))
+        if (std::optional<Asked> asked = Next(name, node.Incarnation, message, wanted, now))
         {
             asked->What.number = _nextNumber++;
             node.LastAsked = message;
@@ -143,6 +153,7 @@ std::vector<Requester::Asking> Requester::Due(Duration now)
             if (node.IsUp && wanted.Open && now - wanted.Open->At >= Patience)
             {
                 wanted.Open.reset();
+                wanted.Most = std::max(wanted.Most / 2, PostAnswers::SmallestAnswer);
             }
         }
         const Asked *asked = OpenQuestion(node);
@@ -178,7 +189,7 @@ void Requester::Failed(const std::string &name, const Question &question, Durati
     }
 }
 
-std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &name, const Answer &answer,
+std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &name, Answer answer,
                                                             const Record &record, Duration now)
 {
     const auto node = _nodes.find(name);
@@ -195,8 +206,24 @@ std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &n
     const Asked asked = std::move(*wanted->second.Open);
     wanted->second.Open.reset();
     wanted->second.Refusal = answer.result == Result::OK ? "" : TextOf(answer.result);
+    if (answer.result == Result::FAILED && answer.kind == Kind::POSTS &&
+        answer.size == PostAnswers::NeverReadable && answer.from >= asked.What.from &&
+        answer.from < answer.to && answer.to <= asked.What.to)
+    {
+        // Not whole, but there is nothing to ask for. What is older is asked for next.
+        _ledger.SetWhole({name, answer.name, answer.incarnation}, {answer.from, answer.to});
+        wanted->second.Refusal.clear();
+        wanted->second.Large.reset();
+        wanted->second.Damaged = Series{name, answer.name, answer.incarnation};
+        wanted->second.DamagedUntil = answer.to;
+        return std::nullopt;
+    }
     if (answer.result != Result::OK)
     {
+        if (answer.result != Result::FAILED)  // what failed may work later, and goes on where it was
+        {
+            wanted->second.Large.reset();
+        }
         wanted->second.NotBefore = now + Pause;
         return std::nullopt;
     }
@@ -204,13 +231,17 @@ std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &n
     {
         // A node that has just begun has nothing yet.
         wanted->second.NextSpans = now + (answer.bytes.empty() ? ShortestLook : LongestLook);
-        TakeSpans(name, answer);
+        TakeSpans(name, answer, wanted->second);
         return std::nullopt;
+    }
+    if (now - asked.At < Patience / 4 && answer.bytes.size() >= wanted->second.Most / 2)
+    {
+        wanted->second.Most = std::min(wanted->second.Most * 2, PostAnswers::LargestAnswer);
     }
     return TakePosts(name, asked, answer, record, wanted->second, now);
 }
 
-void Requester::TakeSpans(const std::string &node, const Answer &answer)
+void Requester::TakeSpans(const std::string &node, const Answer &answer, Wanted &wanted)
 {
     const auto spans = PostsCodec::DecodeSpans(answer.bytes);
     if (!spans)
@@ -218,19 +249,73 @@ void Requester::TakeSpans(const std::string &node, const Answer &answer)
         ++_malformed;
         return;
     }
+    bool isDamaged = false;  // as long as the damaged part is among what could be asked for
     for (const PostsCodec::Span &span : *spans)
     {
         _ledger.SetSpan({node, answer.name, span.Incarnation}, span.Stamps);
+        isDamaged = isDamaged || (wanted.Damaged && wanted.Damaged->Incarnation == span.Incarnation &&
+                                  span.Stamps.First < wanted.DamagedUntil);
+    }
+    if (!isDamaged)
+    {
+        wanted.Damaged.reset();
     }
 }
 
+void Requester::RestAfter(std::size_t bytes, const Asked &asked, Duration now)
+{
+    const double share =
+        std::min(1.0, static_cast<double>(bytes) / static_cast<double>(PostAnswers::LargestAnswer));
+    _restUntil = now + std::chrono::duration_cast<Duration>(share * Rest * std::min(now - asked.At, Slow));
+}
+
+Requester::Part Requester::TakePart(const Asked &asked, Answer &answer, Wanted &wanted)
+{
+    if (answer.size == 0)
+    {
+        wanted.Large.reset();
+        return Part::None;
+    }
+    const bool isFirst = !wanted.Large;
+    const bool isOfThatPost =
+        isFirst ? answer.from >= asked.What.from && answer.from < answer.to && answer.to <= asked.What.to
+                : answer.size == wanted.Large->Size && answer.from == wanted.Large->Covered.First;
+    if (!isOfThatPost || answer.offset != asked.What.offset || answer.size > LargestPost ||
+        answer.bytes.empty() || answer.bytes.size() > answer.size - std::min(answer.size, answer.offset))
+    {
+        wanted.Large.reset();  // it is asked for from its beginning
+        return Part::Malformed;
+    }
+    if (isFirst)
+    {
+        wanted.Large = LargePost{answer.incarnation, {answer.from, answer.to}, answer.size, {}};
+    }
+    LargePost &large = *wanted.Large;
+    large.Bytes.insert(large.Bytes.end(), answer.bytes.begin(), answer.bytes.end());
+    if (large.Bytes.size() < large.Size)
+    {
+        return Part::One;
+    }
+    answer.to = large.Covered.End;
+    answer.bytes = std::move(large.Bytes);
+    wanted.Large.reset();
+    return Part::Last;
+}
+
 std::optional<std::pair<Series, Range>> Requester::TakePosts(const std::string &node, const Asked &asked,
-                                                             const Answer &answer, const Record &record,
+                                                             Answer &answer, const Record &record,
                                                              Wanted &wanted, Duration now)
 {
+    RestAfter(answer.bytes.size(), asked, now);
+    const Part part = TakePart(asked, answer, wanted);
+    if (part == Part::One)
+    {
+        return std::nullopt;
+    }
     const Range range{answer.from, answer.to};
     const auto posts = PostsCodec::DecodePosts(answer.bytes, answer.from);
-    if (!posts || range.First < asked.What.from || range.End > asked.What.to ||
+    if (part == Part::Malformed || !posts || range.First < asked.What.from ||
+        (part == Part::None && range.End > asked.What.to) ||
         std::any_of(posts->begin(), posts->end(),
                     [&range](const Post &post) { return !range.Contains(StampOf(post.SourceTime)); }))
     {
@@ -250,10 +335,8 @@ std::optional<std::pair<Series, Range>> Requester::TakePosts(const std::string &
         }
         wanted.NextLook = now + wanted.Look.Interval();
     }
-    const double share = std::min(
-        1.0, static_cast<double>(answer.bytes.size()) / static_cast<double>(PostAnswers::LargestAnswer));
-    _restUntil = now + std::chrono::duration_cast<Duration>(share * Rest * std::min(now - asked.At, Slow));
     const Series series{node, answer.name, answer.incarnation};
+    bool areAllHere = true;
     for (const Post &post : *posts)
     {
         const Stamp stamp = StampOf(post.SourceTime);
@@ -261,15 +344,16 @@ std::optional<std::pair<Series, Range>> Requester::TakePosts(const std::string &
         {
             ++_repeated;
         }
-        else if (record(series, post))
-        {
-            ++_recorded;
-        }
-        else
+        else if (const Taken taken = record(series, post); taken == Taken::NotNow)
         {
             _ledger.Undo(series, stamp);
             wanted.NotBefore = now + Pause;
             return std::nullopt;
+        }
+        else
+        {
+            _recorded += taken == Taken::Recorded ? 1 : 0;
+            areAllHere = areAllHere && taken == Taken::Recorded;
         }
     }
     _ledger.SetWhole(series, range);
@@ -279,7 +363,7 @@ std::optional<std::pair<Series, Range>> Requester::TakePosts(const std::string &
         wanted.NotBefore = now + std::chrono::seconds(1);
         return std::nullopt;
     }
-    return std::pair(series, range);
+    return areAllHere ? std::optional(std::pair(series, range)) : std::nullopt;
 }
 
 std::map<std::pair<std::string, std::string>, std::string> Requester::Refusals() const
@@ -289,9 +373,10 @@ std::map<std::pair<std::string, std::string>, std::string> Requester::Refusals()
     {
         for (const auto &[message, wanted] : node.Messages)
         {
-            if (node.IsUp && !wanted.Refusal.empty())
+            if (node.IsUp && (!wanted.Refusal.empty() || wanted.Damaged))
             {
-                refusals[{name, message}] = wanted.Refusal;
+                refusals[{name, message}] =
+                    wanted.Refusal.empty() ? "a part of its recording is damaged" : wanted.Refusal;
             }
         }
     }

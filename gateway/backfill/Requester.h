@@ -13,6 +13,7 @@
 
 #include "backfill.idl.h"
 #include "backfill/Ledger.h"
+#include "backfill/PostAnswers.h"
 
 namespace Rabit::Backfill
 {
@@ -36,12 +37,16 @@ public:
     // one for less. So the channel is free for live values and commands most of the time, whatever its
     // capacity.
     static constexpr int Rest = 4;
+    // Bytes of a post in its answer: of the largest sample that a node can post, and some more.
+    static constexpr std::uint64_t LargestPost = (std::uint64_t{64} << 20) + PostStore::PostOverhead;
     // From one look at the newest posts to the next: doubles up to the longest while nothing is missing.
     static constexpr Duration ShortestLook = std::chrono::seconds(10);
     static constexpr Duration LongestLook = std::chrono::seconds(60);
     // Until a node that refused a question, or did not answer it, is asked again.
     static constexpr Duration Pause = std::chrono::seconds(30);
-    // Time in which a node is UP until an answer is taken for lost.
+    // Time in which a node is UP until an answer is taken for lost. The next one is asked to be half as
+    // large, since the channel may be too slow, and after an answer that came in a quarter of this, twice as
+    // large.
     static constexpr Duration Patience = std::chrono::seconds(120);
 
     // The ledger must outlive the object. Posts older than `last` are not requested. Questions are numbered
@@ -68,10 +73,16 @@ public:
     std::vector<Asking> Due(Duration now);
     void Failed(const std::string &node, const Question &question, Duration now);
 
-    // Records a post; false if it cannot be recorded now.
-    using Record = std::function<bool(const Series &series, const Post &post)>;
-    // Takes in an answer of that node. Returns the range that is whole now; empty: none is.
-    std::optional<std::pair<Series, Range>> Answered(const std::string &node, const Answer &answer,
+    enum class Taken
+    {
+        Recorded,
+        Refused,  // it is not to be recorded
+        NotNow
+    };
+    // Records a post.
+    using Record = std::function<Taken(const Series &series, const Post &post)>;
+    // Takes in an answer of that node. Returns the range that is whole in the recording now; empty: none is.
+    std::optional<std::pair<Series, Range>> Answered(const std::string &node, Answer answer,
                                                      const Record &record, Duration now);
 
     // Posts that were recorded; that came and were there already; answers that nobody asked for, or that do
@@ -89,6 +100,14 @@ private:
         bool LooksAtNewest = false;
         Duration At{0};
     };
+    // A post that is larger than an answer, as far as it has come.
+    struct LargePost
+    {
+        std::uint64_t Incarnation = 0;
+        Range Covered;  // whole once it is here: it is the first post, and the only one that was lacking
+        std::uint64_t Size = 0;
+        std::vector<std::uint8_t> Bytes;
+    };
     struct Wanted
     {
         std::optional<Asked> Open;
@@ -96,7 +115,11 @@ private:
         Duration NextLook{0};
         Backoff Look{{ShortestLook, LongestLook}};
         Duration NotBefore{0};
+        std::size_t Most = PostAnswers::LargestAnswer;  // bytes of an answer
+        std::optional<LargePost> Large;                 // that comes in parts
         std::string Refusal;
+        std::optional<Series> Damaged;  // a part of its posts can never be read
+        Stamp DamagedUntil = 0;
     };
     struct Node
     {
@@ -108,12 +131,21 @@ private:
 
     static const Asked *OpenQuestion(const Node &node);
     std::optional<Asking> NextOf(const std::string &name, Node &node, Duration now);
-    std::optional<Asked> Next(const std::string &node, const std::string &message, const Wanted &wanted,
-                              Duration now) const;
-    void TakeSpans(const std::string &node, const Answer &answer);
+    std::optional<Asked> Next(const std::string &node, std::uint64_t present, const std::string &message,
+                              const Wanted &wanted, Duration now) const;
+    void TakeSpans(const std::string &node, const Answer &answer, Wanted &wanted);
+    enum class Part
+    {
+        None,  // the answer is whole
+        One,   // more is to come
+        Last,  // with it the answer is that of the whole post
+        Malformed
+    };
+    static Part TakePart(const Asked &asked, Answer &answer, Wanted &wanted);
+    void RestAfter(std::size_t bytes, const Asked &asked, Duration now);
     std::optional<std::pair<Series, Range>> TakePosts(const std::string &node, const Asked &asked,
-                                                      const Answer &answer, const Record &record,
-                                                      Wanted &wanted, Duration now);
+                                                      Answer &answer, const Record &record, Wanted &wanted,
+                                                      Duration now);
 
     Ledger &_ledger;
     const std::chrono::seconds _last;

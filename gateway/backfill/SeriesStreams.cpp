@@ -84,39 +84,80 @@ std::uint32_t SeriesStreams::StreamOf(const Series &series, bool isLive, std::in
     return number;
 }
 
+void SeriesStreams::SetPaused(bool isPaused)
+{
+    std::map<Series, Early> early;
+    {
+        const std::lock_guard lock(_mutex);
+        _isPaused = isPaused;
+        _hasBegun = _hasBegun || !isPaused;
+        if (!isPaused)
+        {
+            early.swap(_early);
+        }
+    }
+    for (const auto &[series, live] : early)
+    {
+        Record(series, live);
+    }
+}
+
 void SeriesStreams::TakeLive(const GatewayTap::MirroredSample &sample)
 {
-    if (!IsBackfilled(sample.Message) || _isPaused)
+    if (!IsBackfilled(sample.Message))
     {
         return;
     }
     const Series series{std::string(sample.Node), std::string(sample.Message), sample.Incarnation};
-    const Stamp stamp = StampOf(sample.SourceTime);
+    const auto copy = [&sample] {
+        return Early{sample.SourceTime, sample.PostedAt, {sample.Sample.begin(), sample.Sample.end()}};
+    };
+    if (_isPaused)
+    {
+        const std::lock_guard lock(_mutex);
+        if (!_hasBegun && (_early.contains(series) || _early.size() < MostEarly))
+        {
+            _early[series] = copy();
+        }
+        return;
+    }
+    Record(series, copy());
+}
+
+void SeriesStreams::Record(const Series &series, const Early &live)
+{
+    const Stamp stamp = StampOf(live.SourceTime);
     if (!_ledger->Take(series, stamp))
     {
         return;
     }
-    const std::uint64_t postedAt = _target->At(sample.PostedAt);
+    const std::uint64_t postedAt = _target->At(live.PostedAt);
     const std::uint32_t stream =
-        StreamOf(series, true, static_cast<std::int64_t>(postedAt) - sample.SourceTime);
-    if (!_target->Put(stream, postedAt, {sample.Sample.begin(), sample.Sample.end()},
-                      static_cast<std::uint32_t>(stamp)))
+        StreamOf(series, true, static_cast<std::int64_t>(postedAt) - live.SourceTime);
+    if (!_target->Put(stream, postedAt, live.Sample, static_cast<std::uint32_t>(stamp)))
     {
         _ledger->Undo(series, stamp);
     }
 }
 
-bool SeriesStreams::TakeMissed(const Series &series, const Post &post, std::chrono::nanoseconds sourceToLocal)
+Requester::Taken SeriesStreams::TakeMissed(const Series &series, const Post &post,
+                                           std::chrono::nanoseconds sourceToLocal)
 {
     const std::uint64_t time = _target->At(std::chrono::nanoseconds(post.SourceTime) + sourceToLocal);
     if (!IsCredible(time, _target->Now(), _config.Record->BackfillLast))
     {
         ++_incredible;
-        return true;
+        return Requester::Taken::Refused;
     }
     const std::uint32_t stream = StreamOf(series, false, static_cast<std::int64_t>(time) - post.SourceTime);
-    return _target->Inbox().Put(
+    if (post.Bytes.size() > _config.Record->Memory / 4 * 3)
+    {
+        ++_tooLarge;
+        return Requester::Taken::Refused;  // there is never room for it
+    }
+    const bool isPut = _target->Inbox().Put(
         {stream, static_cast<std::uint32_t>(StampOf(post.SourceTime)), time, time, post.Bytes});
+    return isPut ? Requester::Taken::Recorded : Requester::Taken::NotNow;
 }
 
 void SeriesStreams::TakeWhole(const Series &series, Range range)

@@ -11,8 +11,10 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "backfill/Ledger.h"
+#include "backfill/Requester.h"
 #include "recording/RecordingTarget.h"
 
 namespace Rabit::Backfill
@@ -24,25 +26,43 @@ namespace Rabit::Backfill
 class SeriesStreams
 {
 public:
+    // Series whose newest message is kept before the first end of the pause.
+    static constexpr std::size_t MostEarly = 256;
+
     SeriesStreams(const GatewayConfig &config, std::shared_ptr<RecordingTarget> target,
                   std::shared_ptr<Ledger> ledger);
 
     // A message that came live, if it is one of those and is not recorded yet.
     void TakeLive(const GatewayTap::MirroredSample &sample);
-    // A post that was missed; false if there is no room for it. `sourceToLocal` relates its time to the
-    // monotonic clock here. A post whose time is not credible is dropped, and counted.
-    bool TakeMissed(const Series &series, const Post &post, std::chrono::nanoseconds sourceToLocal);
+    // A post that was missed. `sourceToLocal` relates its time to the monotonic clock here. A post whose time
+    // is not credible is refused, and counted, as one that is too large; if there is no room, it is to come
+    // later.
+    Requester::Taken TakeMissed(const Series &series, const Post &post,
+                                std::chrono::nanoseconds sourceToLocal);
     // A range that is whole from now on.
     void TakeWhole(const Series &series, Range range);
 
-    // While paused no live message is recorded: it comes later.
-    void SetPaused(bool isPaused) { _isPaused = isPaused; }
+    // While paused no live message is recorded: it comes later. Paused from the beginning on, until it is
+    // known what the recordings have. Then the newest live message of each series is recorded, since its
+    // origin may not record.
+    void SetPaused(bool isPaused);
 
     std::uint64_t Incredible() const { return _incredible; }
+    // Posts that do not fit into the memory of the recording.
+    std::uint64_t TooLarge() const { return _tooLarge; }
 
     bool IsBackfilled(std::string_view message) const { return _messages.contains(message); }
 
 private:
+    // A live message that came before the first end of the pause.
+    struct Early
+    {
+        std::int64_t SourceTime = 0;
+        std::chrono::nanoseconds PostedAt{0};
+        std::vector<std::uint8_t> Sample;
+    };
+
+    void Record(const Series &series, const Early &live);
     std::uint32_t StreamOf(const Series &series, bool isLive, std::int64_t sourceToLog);
 
     const GatewayConfig _config;
@@ -50,10 +70,13 @@ private:
     const std::shared_ptr<Ledger> _ledger;
     std::set<std::string, std::less<>> _messages;
     const std::uint32_t _marks;
-    std::atomic<bool> _isPaused{false};
+    std::atomic<bool> _isPaused{true};
     std::atomic<std::uint64_t> _incredible{0};
+    std::atomic<std::uint64_t> _tooLarge{0};
     std::mutex _mutex;
     std::map<std::pair<Series, bool>, std::uint32_t> _streams;
+    bool _hasBegun = false;
+    std::map<Series, Early> _early;
 };
 
 // The topic in which whole ranges are recorded, as JSON.

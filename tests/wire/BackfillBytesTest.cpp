@@ -23,13 +23,13 @@ constexpr const char *StampsBytes = "00ac02ac9909";
 constexpr const char *SpansBytes = "808080805080a094a58d1de807808080806088c794a58d1d01";
 constexpr const char *PostsBytes = "0703c0ffeef9887a00";
 constexpr const char *QuestionBytes =
-    "000100020100000000000000887766554433221105000000506f736500000000\n"
+    "000100000100000000000000887766554433221105000000506f736500000000\n"
     "0000000000000000050000000010a5d4e8000000401da8d4e800000006000000\n"
-    "00ac02ac99090000";
+    "00ac02ac9909000000000000000100000000000000200000";
 constexpr const char *AnswerBytes =
     "00010001020000000300000088776655443322110c000000666c696768742e6d\n"
     "6361700001000000000000000200000000000000030000000000000004000000\n"
-    "0000000003000000c0ffee00";
+    "00000000050000000000000003000000c0ffee00";
 
 std::vector<Stamp> Stamps()
 {
@@ -57,6 +57,8 @@ Question FullQuestion()
     question.from = First;
     question.to = First + 200'000;
     question.had = PostsCodec::EncodeStamps(Stamps(), First);
+    question.offset = 0x100;
+    question.most = 0x2000;
     return question;
 }
 
@@ -71,6 +73,7 @@ Answer FullAnswer()
     answer.from = 2;
     answer.to = 3;
     answer.size = 4;
+    answer.offset = 5;
     answer.bytes = {0xc0, 0xff, 0xee};
     return answer;
 }

@@ -55,7 +55,7 @@ public:
     Found Read(const std::string &message, std::uint64_t incarnation, Range range,
                const std::vector<Stamp> &had, std::size_t most) override
     {
-        Found found{.First = range.First, .Posts = {}, .IsReadable = true};
+        Found found{.First = range.First, .Posts = {}};
         const auto &posts = Lives.at(incarnation).Posts.at(message);
         std::size_t bytes = 0;
         for (auto post = posts.lower_bound(range.End); post != posts.lower_bound(range.First);)
@@ -83,6 +83,7 @@ public:
         }
         return found;
     }
+    std::uint64_t Present() const override { return Lives.empty() ? 0 : Lives.rbegin()->first; }
 };
 
 class Simulation
@@ -360,10 +361,10 @@ private:
             {
                 if (_random() % 500 == 0)
                 {
-                    return false;  // no room
+                    return Requester::Taken::NotNow;  // no room
                 }
                 _file.push_back({.At = _now, .Of = series, .What = post, .IsBackfilled = true});
-                return true;
+                return Requester::Taken::Recorded;
             },
             _now);
         if (whole)

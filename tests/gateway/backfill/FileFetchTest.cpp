@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <random>
+#include <utility>
 
 namespace Rabit::Backfill
 {
@@ -107,6 +108,36 @@ TEST(FileFetchTest, BytesThatAreNotTheNextOnesAreDropped)
     EXPECT_TRUE(fetch.Answered(AnswerOf(file, parts[1]), 0s).empty());
     EXPECT_EQ(fetch.Repeated(), FileFetch::PartSize);
     EXPECT_EQ(fetch.Answered(AnswerOf(file, parts[0]), 0s).size(), FileFetch::PartSize);
+}
+
+// Without this all later parts travel in vain, until the last one has come.
+TEST(FileFetchTest, AfterALostAnswerItsPartIsAskedForAtOnce)
+{
+    FileFetch fetch("a.mcap", 0, 1);
+    fetch.SetNode(1, true, 0s);
+    const auto file = Content(100 * FileFetch::PartSize);
+    fetch.Answered(AnswerOf(file, fetch.Due(0s)[0]), 0s);
+    std::deque<Question> underWay;
+    bool isLost = false;
+    std::size_t answers = 0;
+    while (!fetch.IsWhole())
+    {
+        for (Question &question : fetch.Due(0s))
+        {
+            underWay.push_back(std::move(question));
+        }
+        ASSERT_FALSE(underWay.empty()) << "nothing is asked for at byte " << fetch.Have();
+        const Question question = underWay.front();
+        underWay.pop_front();
+        ++answers;
+        if (question.from == 10 * FileFetch::PartSize && !std::exchange(isLost, true))
+        {
+            continue;
+        }
+        fetch.Answered(AnswerOf(file, question), 0s);
+    }
+    EXPECT_TRUE(isLost);
+    EXPECT_LE(answers, 100 + FileFetch::MostAhead);
 }
 
 // The node and this program are killed now and then: what was under way is lost or arrives.

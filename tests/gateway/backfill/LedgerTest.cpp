@@ -24,7 +24,7 @@ TEST(LedgerTest, NothingIsMissingBeforeTheOriginWasAsked)
 {
     Ledger ledger;
     ledger.Take(Pose, 5);
-    EXPECT_FALSE(ledger.NewestGap("uav1", "Pose", true));
+    EXPECT_FALSE(ledger.NewestGap("uav1", "Pose", 7, true));
 }
 
 TEST(LedgerTest, TheGapTellsWhatIsThereAlready)
@@ -32,7 +32,7 @@ TEST(LedgerTest, TheGapTellsWhatIsThereAlready)
     Ledger ledger;
     ledger.Take(Pose, 5);
     ledger.SetSpan(Pose, {2, 9});
-    const auto gap = ledger.NewestGap("uav1", "Pose", true);
+    const auto gap = ledger.NewestGap("uav1", "Pose", 7, true);
     ASSERT_TRUE(gap);
     EXPECT_EQ(gap->Stamps, (Range{2, 9}));
     EXPECT_EQ(gap->Had, std::vector<Stamp>{5});
@@ -44,21 +44,36 @@ TEST(LedgerTest, ANewLiveValueProlongsTheSpan)
     Ledger ledger;
     ledger.SetSpan(Pose, {2, 9});
     ledger.SetWhole(Pose, {2, 9});
-    EXPECT_FALSE(ledger.NewestGap("uav1", "Pose", true));
+    EXPECT_FALSE(ledger.NewestGap("uav1", "Pose", 7, true));
     ledger.Take(Pose, 20);
-    EXPECT_EQ(ledger.NewestGap("uav1", "Pose", true)->Stamps, (Range{9, 21}));
-    EXPECT_FALSE(ledger.NewestGap("uav1", "Pose", false)) << "perhaps nothing is missing";
+    EXPECT_EQ(ledger.NewestGap("uav1", "Pose", 7, true)->Stamps, (Range{9, 21}));
+    EXPECT_FALSE(ledger.NewestGap("uav1", "Pose", 7, false)) << "perhaps nothing is missing";
 }
 
-TEST(LedgerTest, TheNewestIncarnationComesFirst)
+TEST(LedgerTest, ThePresentIncarnationComesFirst)
 {
     Ledger ledger;
     ledger.SetSpan(Pose, {100, 200});
     ledger.SetSpan({"uav1", "Pose", 8}, {10, 20});
     ledger.SetSpan({"uav2", "Pose", 9}, {10, 20});
-    EXPECT_EQ(ledger.NewestGap("uav1", "Pose", true)->Of.Incarnation, 8U);
+    EXPECT_EQ(ledger.NewestGap("uav1", "Pose", 8, true)->Of.Incarnation, 8U);
     ledger.SetWhole({"uav1", "Pose", 8}, {10, 20});
-    EXPECT_EQ(ledger.NewestGap("uav1", "Pose", false)->Of.Incarnation, 7U);
+    EXPECT_EQ(ledger.NewestGap("uav1", "Pose", 8, false)->Of.Incarnation, 7U);
+}
+
+// Its clock was put back. The gap at the end of the present incarnation is then no reason to ask again and
+// again.
+TEST(LedgerTest, ThePresentIncarnationMayHaveALowerNumberThanAFormerOne)
+{
+    Ledger ledger;
+    ledger.SetSpan(Pose, {100, 200});
+    ledger.SetSpan({"uav1", "Pose", 5}, {10, 20});
+    EXPECT_EQ(ledger.NewestGap("uav1", "Pose", 5, true)->Of.Incarnation, 5U);
+    EXPECT_TRUE(ledger.NewestGap("uav1", "Pose", 5, true)->IsNewest);
+    EXPECT_EQ(ledger.NewestGap("uav1", "Pose", 5, false)->Of.Incarnation, 7U);
+    EXPECT_FALSE(ledger.NewestGap("uav1", "Pose", 5, false)->IsNewest);
+    ledger.SetWhole(Pose, {100, 200});
+    EXPECT_FALSE(ledger.NewestGap("uav1", "Pose", 5, false));
 }
 
 TEST(LedgerTest, AGapWithManyValuesIsReturnedFromItsEnd)
@@ -69,7 +84,7 @@ TEST(LedgerTest, AGapWithManyValuesIsReturnedFromItsEnd)
     {
         ledger.Take(Pose, stamp);
     }
-    const auto gap = ledger.NewestGap("uav1", "Pose", true);
+    const auto gap = ledger.NewestGap("uav1", "Pose", 7, true);
     EXPECT_EQ(gap->Had.size(), Ledger::MostHad);
     EXPECT_EQ(gap->Stamps.First, gap->Had.front());
     EXPECT_EQ(gap->Stamps.End, 3 * Ledger::MostHad + 1);

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "backfill/PostAnswers.h"
 #include "backfill/PostsCodec.h"
 
@@ -47,14 +49,17 @@ protected:
     Ledger ledger;
     Requester requester{ledger, 3600s, 100};
     bool hasRoom = true;
+    bool isCredible = true;
     std::vector<Post> recorded;
     Requester::Record record = [this](const Series &, const Post &post)
     {
-        if (hasRoom)
+        if (hasRoom && isCredible)
         {
             recorded.push_back(post);
         }
-        return hasRoom;
+        return !isCredible ? Requester::Taken::Refused
+               : hasRoom   ? Requester::Taken::Recorded
+                           : Requester::Taken::NotNow;
     };
 };
 
@@ -125,6 +130,157 @@ TEST_F(RequesterTest, WithoutRoomTheRangeIsAskedForAgain)
     ASSERT_EQ(due.size(), 1U);
     requester.Answered("uav1", WithPost(due[0].What, TimeOf(1500)), record, 32s);
     EXPECT_EQ(recorded.size(), 1U);
+}
+
+TEST_F(RequesterTest, ARangeWithAPostThatIsNotRecordedIsNotWholeAndNotAskedForAgain)
+{
+    const Question question = AskForPosts();
+    isCredible = false;
+    EXPECT_FALSE(requester.Answered("uav1", WithPost(question, TimeOf(1500)), record, 1s));
+    EXPECT_EQ(requester.Recorded(), 0U);
+    EXPECT_TRUE(requester.Due(2s + Requester::Pause).empty());
+}
+
+// Has one large post, and posts around it.
+class LargePostStore final : public PostStore
+{
+public:
+    static constexpr std::size_t Size = 450'000;
+
+    std::vector<PostsCodec::Span> Spans(const std::string &, std::uint64_t) override
+    {
+        return {{7, {1000, 2000}, true}};
+    }
+    Found Read(const std::string &, std::uint64_t, Range range, const std::vector<Stamp> &had,
+               std::size_t) override
+    {
+        for (const Stamp stamp : {Stamp{1800}, Stamp{1500}, Stamp{1200}})
+        {
+            if (range.Contains(stamp) && !std::binary_search(had.begin(), had.end(), stamp))
+            {
+                return {.First = stamp, .Posts = {{TimeOf(stamp) + 3, Bytes(stamp)}}};
+            }
+        }
+        return {.First = range.First, .Posts = {}};
+    }
+    std::uint64_t Present() const override { return 8; }
+
+    static std::vector<std::uint8_t> Bytes(Stamp stamp)
+    {
+        std::vector<std::uint8_t> bytes(stamp == 1500 ? Size : 10);
+        for (std::size_t i = 0; i < bytes.size(); ++i)
+        {
+            bytes[i] = static_cast<std::uint8_t>(i * 7 + i / 256);
+        }
+        return bytes;
+    }
+};
+
+class LargePostTest : public RequesterTest
+{
+protected:
+    // Asks and answers over a channel of so many bytes a second, until nothing more is asked for. An answer
+    // that would take longer than two minutes does not come. Returns the bytes that were sent.
+    std::size_t RunAt(double rate, Requester::Duration end)
+    {
+        std::size_t sent = 0;
+        Requester::Duration now{0};
+        while (now < end && recorded.size() < 3)
+        {
+            const auto due = requester.Due(now);
+            if (due.empty())
+            {
+                now += 1s;
+                continue;
+            }
+            const Answer answer = answers.Of("ground", due[0].What);
+            const auto takes = std::chrono::duration_cast<Requester::Duration>(
+                std::chrono::duration<double>(static_cast<double>(answer.bytes.size() + 100) / rate));
+            sent += answer.bytes.size();
+            now += std::min<Requester::Duration>(takes, 121s);
+            if (takes < 120s)
+            {
+                requester.Answered("uav1", answer, record, now);
+            }
+        }
+        return sent;
+    }
+
+    LargePostStore store;
+    PostAnswers answers{store, [](const std::string &, const std::string &) { return true; },
+                        [](const std::string &) { return true; }};
+};
+
+TEST_F(LargePostTest, ComesInPartsAndOlderPostsAfterIt)
+{
+    const std::size_t sent = RunAt(3000, 24h);
+    ASSERT_EQ(recorded.size(), 3U);
+    EXPECT_EQ(recorded[1], (Post{TimeOf(1500) + 3, LargePostStore::Bytes(1500)}));
+    EXPECT_EQ(recorded[2].SourceTime, TimeOf(1200) + 3);
+    EXPECT_LT(sent, LargePostStore::Size + 1000) << "nothing travels twice";
+}
+
+TEST_F(LargePostTest, ComesOverAChannelThatTakesLongerForAnAnswerThanItIsWaitedFor)
+{
+    RunAt(60, 1000h);
+    ASSERT_EQ(recorded.size(), 3U);
+    EXPECT_EQ(recorded[1], (Post{TimeOf(1500) + 3, LargePostStore::Bytes(1500)}));
+}
+
+TEST_F(LargePostTest, IsAskedForFromItsBeginningIfItIsAnotherOneNow)
+{
+    Question question = AskForPosts();
+    requester.Answered("uav1", answers.Of("ground", question), record, 0s);  // the one of 1800
+    question = requester.Due(1s).at(0).What;
+    requester.Answered("uav1", answers.Of("ground", question), record, 1s);
+    question = requester.Due(2s).at(0).What;
+    EXPECT_EQ(question.offset, PostAnswers::LargestAnswer);
+    Answer other = answers.Of("ground", question);
+    ++other.size;
+    requester.Answered("uav1", other, record, 2s);
+    EXPECT_EQ(requester.Malformed(), 1U);
+    EXPECT_EQ(requester.Due(2s + Requester::Pause).at(0).What.offset, 0U);
+}
+
+TEST_F(LargePostTest, IsGivenUpIfItsFileIsDamagedMeanwhile)
+{
+    Question question = AskForPosts();
+    requester.Answered("uav1", answers.Of("ground", question), record, 0s);  // the one of 1800
+    question = requester.Due(1s).at(0).What;
+    requester.Answered("uav1", answers.Of("ground", question), record, 1s);
+    question = requester.Due(2s).at(0).What;
+    EXPECT_GT(question.offset, 0U);
+    Answer damaged = AnswerTo(question);
+    damaged.result = Result::FAILED;
+    damaged.size = PostAnswers::NeverReadable;
+    requester.Answered("uav1", damaged, record, 2s);
+    question = requester.Due(3s).at(0).What;
+    EXPECT_EQ(question.offset, 0U);
+    EXPECT_FALSE((Range{question.from, question.to}.Contains(1500)));
+}
+
+// What is older than the damage comes nevertheless.
+TEST_F(RequesterTest, APartThatCanNeverBeReadIsLeftOutAndTold)
+{
+    const Question question = AskForPosts();
+    Answer damaged = AnswerTo(question);
+    damaged.result = Result::FAILED;
+    damaged.size = PostAnswers::NeverReadable;
+    damaged.from = 1700;
+    EXPECT_FALSE(requester.Answered("uav1", damaged, record, 1s));
+    const auto due = requester.Due(1s);
+    ASSERT_EQ(due.size(), 1U);
+    EXPECT_EQ((Range{due[0].What.from, due[0].What.to}), (Range{1000, 1700}));
+    const auto whole = requester.Answered("uav1", WithPost(due[0].What, TimeOf(1500)), record, 2s);
+    ASSERT_TRUE(whole);
+    EXPECT_EQ(whole->second, (Range{1000, 1700}));
+    EXPECT_EQ(requester.Refusals().at({"uav1", "Pose"}), "a part of its recording is damaged");
+    // The damaged file is removed in time.
+    const auto spans = requester.Due(1s + Requester::LongestLook);
+    Answer answer = AnswerTo(spans.at(0).What);
+    answer.bytes = PostsCodec::EncodeSpans({{7, {2500, 3000}}});
+    requester.Answered("uav1", answer, record, 62s);
+    EXPECT_TRUE(requester.Refusals().empty());
 }
 
 TEST_F(RequesterTest, ANodeThatIsNotUpIsNotAskedAndNotGivenUp)

@@ -13,6 +13,7 @@
 #include "backfill/FolderPosts.h"
 #include "backfill/RecordedSeries.h"
 #include "backfill/RecordingIndex.h"
+#include "recording/mcap/RecordedChannel.h"
 
 namespace
 {
@@ -41,16 +42,17 @@ Posts PostsOf(RecordingIndex &index, const std::string &topic)
         std::int64_t sourceToLog = 0;
         if (const auto clock = file.Metadata.find("rabit.clock"); clock != file.Metadata.end())
         {
-            ReadNumber(TextAt(clock->second, "incarnation"), incarnation);
-            ReadNumber(TextAt(clock->second, "source_to_log_ns"), sourceToLog);
+            ReadNumber(Mcap::ValueOf(clock->second, "incarnation"), incarnation);
+            ReadNumber(Mcap::ValueOf(clock->second, "source_to_log_ns"), sourceToLog);
         }
         for (const RecordingIndex::Piece &piece : file.Pieces)
         {
-            const Mcap::Channel &channel = file.Channels.at(piece.Channel);
-            if (channel.Topic != topic)
+            const auto known = file.Channels.find(piece.Channel);
+            if (known == file.Channels.end() || known->second.Topic != topic)
             {
                 continue;
             }
+            const Mcap::Channel &channel = known->second;
             const auto series = SeriesIn(channel);
             index.Visit(
                 file, piece,
@@ -64,7 +66,7 @@ Posts PostsOf(RecordingIndex &index, const std::string &topic)
                     // The last message of a state is repeated at the beginning of a file.
                     const bool isRepeated = isFirst.try_emplace(channel.Id, true).second && post.Times > 0;
                     post.Times += isRepeated ? 0 : 1;
-                    post.Missed += TextAt(channel.Metadata, "rabit.kind") == "backfilled" ? 1 : 0;
+                    post.Missed += Mcap::Describe(channel).Kind == Mcap::ChannelKind::Backfilled ? 1 : 0;
                     post.Bytes.assign(message.Data.begin(), message.Data.end());
                     post.PublishTime = message.PublishTime;
                 });
