@@ -82,8 +82,11 @@ async def main() -> None:
         seen = await aircraft(node.subscribe("uav?/Pose", idl.Uav.Pose), options.aircraft)
         names = sorted(seen)
         middle = seen[names[0]]
+        # Aircraft keep the area with the highest number.
+        states = [node.subscribe(f"{name}/MissionState", idl.Uav.MissionState) for name in names]
+        newest = max([(await asyncio.wait_for(anext(state), 10)).value.search_area for state in states])
         node.post("SearchArea", idl.Uav.SearchArea(
-            number=1, latitude_deg=middle.latitude_deg, longitude_deg=middle.longitude_deg, north_m=300, east_m=300,
+            number=newest + 1, latitude_deg=middle.latitude_deg, longitude_deg=middle.longitude_deg, north_m=300, east_m=300,
             altitude_m=middle.altitude_m, speed_mps=15, lane_m=60))
         await command(node, idl.Uav.Search, names)
         await acknowledged(node, len(names))

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import tempfile
+import warnings
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -50,6 +51,7 @@ class Recording:
         self._channels: dict[str, list[int]] = {}
         for number, topic, *_ in self._file.channels:
             self._channels.setdefault(topic, []).append(number)
+        self._found: dict[str, str] = {}  # problems of reading by their kind; the newest of each
 
     @property
     def topics(self) -> list[Topic]:
@@ -71,20 +73,44 @@ class Recording:
 
     @property
     def problems(self) -> list[str]:
-        """The parts of the file that cannot be read, one line each."""
-        return list(self._file.problems)
+        """The parts of the file that cannot be read, one line each, and the messages that were asked for so far and that
+        cannot be decoded, one line for each topic and reason."""
+        return [*self._file.problems, *self._found.values()]
 
     def __iter__(self) -> Iterator[Recorded]:
         return self.messages()
 
     def messages(self, *topics: str, start: int = 0, end: int = _END) -> Iterator[Recorded]:
         """Messages of these topics, which may be patterns (`uav?/Pose`; `*` stands for any characters); without any, of all. Raises KeyError, with the
-        nearest name, for a topic that is not there."""
+        nearest name, for a topic that is not there. Messages that cannot be decoded are left out; a RuntimeWarning and
+        `problems` tell which, and why."""
         channels: set[int] = set()
         for topic in topics or self._channels:
             channels.update(self._find(topic))
-        for name, log_time, publish_time, value in self._file.messages(channels, start, end):
-            yield Recorded(name, log_time, publish_time, json.loads(value) if isinstance(value, str) else value)
+        cursor = self._file.messages(channels, start, end)
+        no_json: dict[str, int] = {}
+        try:
+            for name, log_time, publish_time, value in cursor:
+                if isinstance(value, str):
+                    try:
+                        value = json.loads(value)
+                    except ValueError:
+                        why = f"{name}: no JSON"
+                        no_json[why] = no_json.get(why, 0) + 1
+                        continue
+                yield Recorded(name, log_time, publish_time, value)
+        finally:
+            self._tell(cursor.problems, {**cursor.undecoded, **no_json})
+
+    def _tell(self, chunks: list[str], undecoded: dict[str, int]) -> None:
+        """Keeps problems of reading, and warns of each that was not there before."""
+        lines = {line: line for line in chunks if line not in self._file.problems}
+        for why, messages in undecoded.items():
+            lines[why] = f"{why} ({messages} {'message is' if messages == 1 else 'messages are'} left out)"
+        for kind, line in lines.items():
+            if kind not in self._found:
+                warnings.warn(line, RuntimeWarning, stacklevel=3)
+            self._found[kind] = line
 
     def to_pandas(self, topic: str, *, clock: str = "log") -> pandas.DataFrame:
         """A table of one topic, or of the topics of a pattern (then with a column `topic`), with the time as its index

@@ -17,6 +17,7 @@
 #include <stdexcept>
 
 #include "ReasonTap.h"
+#include "Seconds.h"
 #include "Values.h"
 #include "names/NamePattern.h"
 
@@ -475,12 +476,37 @@ Gateway::Fleet Node::Fleet()
 
 bool Node::Flush(double seconds)
 {
+    // In pieces, so that Ctrl-C ends it.
+    constexpr std::chrono::nanoseconds piece = std::chrono::milliseconds(200);
+    const auto limit = DurationOf(seconds);
+    const auto start = std::chrono::steady_clock::now();
     const auto parts = UseNetwork();
-    const py::gil_scoped_release released;
-    const std::shared_lock lock(parts->InUse);
-    return parts->Explorer != nullptr &&
-           parts->Explorer->WaitUntilTaken(
-               std::chrono::duration_cast<std::chrono::nanoseconds>(std::chrono::duration<double>(seconds)));
+    for (;;)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        const std::chrono::nanoseconds left = std::max(limit - (now - start), std::chrono::nanoseconds(0));
+        {
+            const py::gil_scoped_release released;
+            const std::shared_lock lock(parts->InUse);
+            if (parts->Explorer == nullptr)
+            {
+                return false;
+            }
+            if (parts->Explorer->WaitUntilTaken(std::min(left, piece)))
+            {
+                return true;
+            }
+        }
+        // It returns early only if the gateway has ended.
+        if (left <= piece || std::chrono::steady_clock::now() - now < piece)
+        {
+            return false;
+        }
+        if (PyErr_CheckSignals() != 0)
+        {
+            throw py::error_already_set();
+        }
+    }
 }
 
 std::vector<std::string> Node::Messages()

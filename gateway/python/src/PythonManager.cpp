@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "Seconds.h"
+
 namespace Rabit::Python
 {
 
@@ -19,7 +21,7 @@ PythonManager::PythonManager(std::string name, RabitWorkspace &workspace, const 
                              double period)
     : RabitManager(std::move(name), workspace), _object(py::weakref(object))
 {
-    if (period > 0)
+    if (DurationOf(period).count() > 0)
     {
         SetPeriodSec(period);
         SetWakeupBetweenTurns(true);

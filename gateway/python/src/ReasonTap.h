@@ -52,6 +52,13 @@ public:
             _inner->Received(message);
         }
     }
+    void Mirrored(const MirroredSample &sample) override
+    {
+        if (_inner)
+        {
+            _inner->Mirrored(sample);
+        }
+    }
     void Clocks(std::uint64_t incarnation, std::chrono::nanoseconds sourceAhead,
                 const std::vector<PeerClock> &peers) override
     {

@@ -64,36 +64,43 @@ Recording::Messages::Messages(std::shared_ptr<Recording> recording, std::set<std
 {
 }
 
+py::object Recording::Messages::ValueOf(const Mcap::Message &message, const Mcap::Channel &channel,
+                                        std::string &why)
+{
+    if (channel.MessageEncoding == "json")
+    {
+        return py::reinterpret_steal<py::object>(
+            PyUnicode_DecodeUTF8(reinterpret_cast<const char *>(message.Data.data()),
+                                 static_cast<Py_ssize_t>(message.Data.size()), "replace"));
+    }
+    const auto type = _recording->ClassOfChannel(message.ChannelId, why);
+    if (!type)
+    {
+        return {};
+    }
+    const auto sample = type->Dynamic->Normalized(message.Data);
+    if (!sample)
+    {
+        why = channel.Topic + ": the bytes do not fit the type";
+        return {};
+    }
+    return Decode(*type->Root, *sample);
+}
+
 py::tuple Recording::Messages::Next()
 {
     while (const auto message = _cursor.Next())
     {
         const auto channel = _recording->_contents.Channels.find(message->ChannelId);
-        if (channel == _recording->_contents.Channels.end())
+        std::string why = "a message of no channel";
+        if (channel != _recording->_contents.Channels.end())
         {
-            ++_undecoded;
-            continue;
-        }
-        py::object value;
-        std::string why;
-        if (channel->second.MessageEncoding == "json")
-        {
-            value = py::reinterpret_steal<py::object>(
-                PyUnicode_DecodeUTF8(reinterpret_cast<const char *>(message->Data.data()),
-                                     static_cast<Py_ssize_t>(message->Data.size()), "replace"));
-        }
-        else if (const auto type = _recording->ClassOfChannel(message->ChannelId, why))
-        {
-            if (const auto sample = type->Dynamic->Normalized(message->Data))
+            if (const py::object value = ValueOf(*message, channel->second, why))
             {
-                value = Decode(*type->Root, *sample);
+                return py::make_tuple(channel->second.Topic, message->LogTime, message->PublishTime, value);
             }
         }
-        if (value)
-        {
-            return py::make_tuple(channel->second.Topic, message->LogTime, message->PublishTime, value);
-        }
-        ++_undecoded;
+        ++_undecoded[why];
     }
     throw py::stop_iteration();
 }

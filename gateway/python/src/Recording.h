@@ -40,12 +40,16 @@ public:
         // and counted. Raises StopIteration.
         py::tuple Next();
         const std::vector<std::string> &Problems() const { return _cursor.Problems(); }
-        std::uint64_t Undecoded() const { return _undecoded; }
+        // The messages that were skipped, by the reason, which begins with the topic.
+        const std::map<std::string, std::uint64_t> &Undecoded() const { return _undecoded; }
 
     private:
+        // The value of a message; null, with the reason, if it cannot be decoded.
+        py::object ValueOf(const Mcap::Message &message, const Mcap::Channel &channel, std::string &why);
+
         const std::shared_ptr<Recording> _recording;
         Mcap::MessageCursor _cursor;
-        std::uint64_t _undecoded = 0;
+        std::map<std::string, std::uint64_t> _undecoded;
     };
 
 private:

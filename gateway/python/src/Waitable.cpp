@@ -10,6 +10,8 @@
 #include <cstdint>
 #include <system_error>
 
+#include "Seconds.h"
+
 namespace Rabit::Python
 {
 namespace
@@ -17,7 +19,7 @@ namespace
 
 // A signal may reach another thread than the waiting one, which Python lets handle it. This is how late that
 // is noticed.
-constexpr double LongestSleep = 0.2;
+constexpr std::chrono::nanoseconds LongestSleep = std::chrono::milliseconds(200);
 
 }  // namespace
 
@@ -103,6 +105,7 @@ bool Waitable::Wait(std::optional<double> seconds, const std::function<bool()> &
 {
     using Clock = std::chrono::steady_clock;
     const auto start = Clock::now();
+    const std::chrono::nanoseconds limit = seconds ? DurationOf(*seconds) : Forever;
     const int fd = _threads.Fd();
     for (;;)
     {
@@ -111,19 +114,17 @@ bool Waitable::Wait(std::optional<double> seconds, const std::function<bool()> &
         {
             return true;
         }
-        const double left =
-            seconds ? *seconds - std::chrono::duration<double>(Clock::now() - start).count() : LongestSleep;
-        if (left <= 0)
+        const std::chrono::nanoseconds left = limit - (Clock::now() - start);
+        if (left.count() <= 0)
         {
             return false;
         }
         {
             const pybind11::gil_scoped_release released;
             pollfd waited{fd, POLLIN, 0};
-            const auto sleep = std::chrono::duration<double>(std::min(left, LongestSleep));
-            const auto nanoseconds = std::chrono::duration_cast<std::chrono::nanoseconds>(sleep).count();
-            const timespec limit{nanoseconds / 1000000000, nanoseconds % 1000000000};
-            ppoll(&waited, 1, &limit, nullptr);
+            const auto nanoseconds = std::min(left, LongestSleep).count();
+            const timespec sleep{nanoseconds / 1000000000, nanoseconds % 1000000000};
+            ppoll(&waited, 1, &sleep, nullptr);
         }
         _threads.Drain();
         if (PyErr_CheckSignals() != 0)

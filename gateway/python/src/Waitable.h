@@ -27,8 +27,9 @@ public:
     void Notify();
     // Like Notify, and from now on Fd stays readable, and Wait never sleeps.
     void Close();
-    // Waits without the GIL until `isReady` (called with the GIL) returns true. False after so many seconds;
-    // empty: waits for ever. Signals are handled meanwhile, so Ctrl-C ends it with KeyboardInterrupt.
+    // Waits without the GIL until `isReady` (called with the GIL) returns true. False after so many seconds
+    // (Seconds.h); empty: waits for ever. Signals are handled meanwhile, so Ctrl-C ends it with
+    // KeyboardInterrupt.
     bool Wait(std::optional<double> seconds, const std::function<bool()> &isReady);
 
 private:

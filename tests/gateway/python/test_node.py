@@ -388,6 +388,23 @@ def test_a_node_that_is_started_again_after_a_wrong_configuration_records_once(i
     assert [message.value.number for message in rabit.open(*recordings).messages("planner/Pose")] == [1]
 
 
+def test_a_time_that_is_no_number_is_refused(idl, one_network):
+    nan = float("nan")
+    with rabit.Node("planner", publish={"Pose": idl.Uav.Pose}, accept={"Commands": [idl.Uav.Goto]}, **one_network) as node:
+        for wait in (lambda: node.queue("Commands").get(timeout=nan), lambda: node.flush(nan)):
+            with pytest.raises(ValueError, match="expected a number of seconds, not nan"):
+                wait()
+
+
+def test_a_wait_without_end_ends_when_it_may(idl, one_network):
+    forever = float("inf")
+    with rabit.Node("planner", publish={"Pose": idl.Uav.Pose}, accept={"Commands": [idl.Uav.Goto]}, **one_network) as node:
+        node.post("Pose", idl.Uav.Pose(number=1))
+        assert node.flush(forever)
+        node.send("Commands", idl.Uav.Goto(id=7))
+        assert node.queue("Commands").get(timeout=forever).value.id == 7
+
+
 def test_iterations_end_when_the_node_stops(idl, one_network):
     ended = []
     node = rabit.Node("planner", accept={"Commands": [idl.Uav.Goto]}, **one_network)

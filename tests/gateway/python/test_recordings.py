@@ -1,6 +1,8 @@
 """Recordings of Python nodes: read, put on one time line, as tables."""
 
+import struct
 import time
+import zlib
 
 import pytest
 
@@ -41,6 +43,33 @@ def knows_the_other_clock(clocks):
     return any(peer["uncertain_by_ns"] is not None for peer in clocks.value["peers"])
 
 
+TEXT = b"\0\1\0\0" + struct.pack("<I", 3) + b"hi\0"
+
+
+def foreign_file(path, schema_encoding, schema, *samples, encoding="cdr"):
+    """Writes a recording of the topic /chatter as other programs do. One sample stands for three."""
+    def text(value):
+        return struct.pack("<I", len(value)) + value
+
+    def record(kind, body):
+        return bytes([kind]) + struct.pack("<Q", len(body)) + body
+
+    samples = samples * 3 if len(samples) == 1 else samples
+    described = record(3, struct.pack("<H", 1) + text(b"Text") + text(schema_encoding.encode()) + text(schema))
+    described += record(4, struct.pack("<HH", 1, 1) + text(b"/chatter") + text(encoding.encode()) + struct.pack("<I", 0))
+    inner = described + b"".join(record(5, struct.pack("<HIQQ", 1, number, 10 + number, 10 + number) + sample)
+                                 for number, sample in enumerate(samples))
+    out = b"\x89MCAP0\r\n" + record(1, text(b"other") + text(b"x"))
+    start = len(out)
+    chunk = record(6, struct.pack("<QQQI", 10, 12, len(inner), zlib.crc32(inner)) + text(b"") + struct.pack("<Q", len(inner)) + inner)
+    out += chunk + record(15, struct.pack("<I", 0))
+    summary = len(out)
+    out += described + record(8, struct.pack("<QQQQ", 10, 12, start, len(chunk)) + struct.pack("<IQ", 0, 0) + text(b"")
+                              + struct.pack("<QQ", len(inner), len(inner)))
+    path.write_bytes(out + record(2, struct.pack("<QQI", summary, 0, 0)) + b"\x89MCAP0\r\n")
+    return path
+
+
 def test_a_recording_gives_decoded_values(flight, idl):
     recording = rabit.open(next(flight.glob("uav1*.mcap")))
     poses = list(recording.messages("uav1/Pose"))
@@ -53,6 +82,17 @@ def test_a_recording_gives_decoded_values(flight, idl):
     begin, end = recording.span
     assert begin < poses[0].log_time < end
     assert list(recording.messages("uav1/Pose", start=poses[5].log_time))[0] == poses[5]
+
+
+def test_live_values_of_a_message_that_is_backfilled_are_recorded(idl, one_network, tmp_path):
+    with rabit.Node("uav1", publish={"Pose": idl.Uav.Pose}, **one_network) as uav1, \
+         rabit.Node("ground", record={"folder": str(tmp_path), "backfill": ["Pose"]},
+                    subscribe=[{"message": "Pose", "type": idl.Uav.Pose}], **one_network) as ground:
+        poses = ground.subscribe("uav1/Pose", idl.Uav.Pose)
+        for number in range(1, 6):
+            uav1.post("Pose", idl.Uav.Pose(number=number))
+            assert poses.get(timeout=120).value.number == number
+        wait_until(lambda: [pose.value.number for pose in found(tmp_path, "ground", "uav1/Pose")] == [1, 2, 3, 4, 5])
 
 
 def test_an_unknown_topic_is_named_with_the_nearest(flight):
@@ -76,6 +116,35 @@ def test_recordings_of_several_nodes_are_on_one_time_line(flight):
     assert times == sorted(times)
     pytest.importorskip("pandas")
     assert set(recording.to_pandas("uav?/Pose")["topic"]) == {"uav1/Pose"}
+
+
+def test_messages_that_cannot_be_decoded_are_told(tmp_path):
+    recording = rabit.open(foreign_file(tmp_path / "other.mcap", "ros2msg", b"string data", TEXT))
+    with pytest.warns(RuntimeWarning, match="/chatter.*3 messages are left out"):
+        assert list(recording.messages("/chatter")) == []
+    (problem,) = recording.problems
+    assert problem.startswith("/chatter: ") and problem.endswith("(3 messages are left out)")
+    list(recording.messages("/chatter"))  # each problem is told once, and is one line
+    assert recording.problems == [problem]
+
+
+def test_samples_that_do_not_fit_their_type_are_told(tmp_path):
+    recording = rabit.open(foreign_file(tmp_path / "short.mcap", "omgidl", b"struct Text { string data; };", b"\0\1\0\0\x09"))
+    with pytest.warns(RuntimeWarning, match="/chatter: the bytes do not fit the type"):
+        assert list(recording) == []
+
+
+def test_json_that_is_none_is_told_and_the_rest_is_read(tmp_path):
+    recording = rabit.open(foreign_file(tmp_path / "json.mcap", "", b"", b"{no", b'{"is": 1}', encoding="json"))
+    with pytest.warns(RuntimeWarning, match="/chatter: no JSON"):
+        assert [message.value for message in recording] == [{"is": 1}]
+
+
+def test_a_table_of_messages_that_cannot_be_decoded_is_told(tmp_path):
+    pytest.importorskip("pandas")
+    recording = rabit.open(foreign_file(tmp_path / "other.mcap", "ros2msg", b"string data", TEXT))
+    with pytest.warns(RuntimeWarning, match="/chatter"):
+        assert len(recording.to_pandas("/chatter")) == 0
 
 
 def test_what_is_no_recording_is_one_line(tmp_path):
