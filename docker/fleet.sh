@@ -130,7 +130,7 @@ up() {
         docker build --tag "$image" --file "$here/Dockerfile" "$here/.."
     [ -z "$secure" ] || has_keys || make_authorities
     make_network
-    run_node ground ground --web 0.0.0.0:8080 "${page[@]}" --search '*'
+    run_node ground ground --web 0.0.0.0:8080 "${page[@]}" --search '*' --search-area 47.3977 8.5456 400 600 510
     for ((k = 1; k <= uavs; k++)); do
         run_node "uav$k" uav
         run_node "uav$k.vision" vision

@@ -247,7 +247,7 @@ vision_arguments() { # vision_arguments K: sets the array `arguments`
 }
 arguments=(--config "$ground_config" --domain "$domain" --transport "$(transport_of 1)")
 keys_argument ground
-ground_arguments=("${arguments[@]}")
+ground_arguments=("${arguments[@]}" --search-area 47.3977 8.5456 400 600 510)
 make_keys ground "$(transport_of 1)" --config "$ground_config"
 make_keys laptop "$(transport_of 1)" --tool
 among=()

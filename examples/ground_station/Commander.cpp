@@ -28,7 +28,6 @@ void Commander::Startup()
     _start = GetWorkspace().GetClock().Monotonic();
     *_fence = _settings.Fence;
     _fence->PostMessage();
-    Take(_settings.Area);
 }
 
 void Commander::ExecuteUnitOfWork()
@@ -37,6 +36,7 @@ void Commander::ExecuteUnitOfWork()
     _elapsedS = std::chrono::duration<double>(elapsed).count();
     FollowReceipts();
     TakeMessages();
+    LookAtAreas(elapsed);
     if (IsTurn() && !IsQuiet(elapsed))
         CommandBySettings(elapsed);
     PostIfChanged();
@@ -59,7 +59,10 @@ void Commander::TakeMessages()
         else if (const auto *order = dynamic_cast<const Order *>(message.get()))
             Obey(*order);
         else if (const auto *area = dynamic_cast<const Uav::SearchArea *>(message.get()))
+        {
             Take(*area);
+            _areaIsWanted = true;
+        }
     }
 }
 
@@ -80,9 +83,43 @@ void Commander::Obey(const Order &order)
 
 void Commander::Take(Uav::SearchArea area)
 {
-    area.number = _area->number + 1;
+    area.number = std::max(_area->number, _highestArea) + 1;
     _area->CopyMessage(&area);
     _area->PostMessage();
+}
+
+void Commander::LookAtAreas(std::chrono::nanoseconds elapsed)
+{
+    bool anyWithout = false;
+    bool isAwaited = false;  // the first report of one of them
+    bool isLower = false;
+    for (auto &[node, aircraft] : _aircraft)
+    {
+        if (aircraft.IsReplay || !aircraft.First || !aircraft.State->GetGlobalPublishSubscribeMessageRef())
+            continue;
+        const bool isThere = _elapsedS - aircraft.HeardS <= 2 * PoseFreshS;
+        aircraft.State->FetchMessage();
+        isAwaited = isAwaited || (isThere && elapsed < *aircraft.First) ||
+                    (isThere && !aircraft.State->WasPosted() && elapsed < *aircraft.First + ReportPatience);
+        if (!aircraft.State->WasPosted())
+            continue;
+        _highestArea = std::max(_highestArea, aircraft.State->search_area);
+        anyWithout = anyWithout || (isThere && aircraft.State->search_area == 0);
+        // Once in a life, so that two ground stations do not outbid each other.
+        if (std::exchange(aircraft.LifeWithArea, aircraft.Life) != aircraft.Life)
+            isLower = isLower || aircraft.State->search_area > _area->number;
+    }
+    if (_settings.Area && _area->number == 0 && _highestArea == 0 && anyWithout && !isAwaited)
+        Take(*_settings.Area);
+    else if (_areaIsWanted && isLower)
+        Take(Uav::SearchArea(*_area));  // one that was away has an area of an earlier run
+}
+
+bool Commander::MayLackArea(const Aircraft &aircraft, std::chrono::nanoseconds elapsed) const
+{
+    return _settings.Area && elapsed < *aircraft.First + ReportPatience &&
+           (!aircraft.State->WasPosted() ||
+            (aircraft.State->search_area == 0 && aircraft.State->area_declined.empty()));
 }
 
 void Commander::CommandBySettings(std::chrono::nanoseconds elapsed)
@@ -102,6 +139,7 @@ void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std:
     if (!(aircraft.Pose->GetAgeSeconds() <= PoseFreshS))
         return;  // no aircraft, or it is not UP with a fresh pose
     LookForNewLife(status.node, status.incarnation);
+    aircraft.IsReplay = status.replay;
     if (!aircraft.First)
         aircraft.First = aircraft.NextGoto = elapsed + FirstAfter();
     if (elapsed < *aircraft.First)
@@ -109,7 +147,7 @@ void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std:
 
     if (!_ordered.contains(status.node) &&
         (_settings.Searchers.contains(status.node) || _settings.Searchers.contains("*")) &&
-        aircraft.ToldToSearch != status.incarnation)
+        aircraft.ToldToSearch != status.incarnation && !MayLackArea(aircraft, elapsed))
     {
         CommandStatus command;
         command.node = status.node;
@@ -160,6 +198,8 @@ Commander::Aircraft &Commander::AircraftOf(const std::string &node)
     {
         aircraft.Pose = std::make_shared<Uav::Pose>();
         AddPublishSubscribeMessage(node + "/Pose", aircraft.Pose);
+        aircraft.State = std::make_shared<Uav::MissionState>();
+        AddPublishSubscribeMessage(node + "/MissionState", aircraft.State);
     }
     return aircraft;
 }

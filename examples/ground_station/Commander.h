@@ -26,10 +26,14 @@ namespace Ground
 //          the fleet should search; and Uav::CommandAck, from any aircraft.
 // Sends:   Uav::Goto, Uav::GoHome and Uav::Search to the queue MissionControl of an aircraft: those ordered,
 //          and those that its settings demand.
-// Posts:   Geofence (Uav::Geofence), at the start; SearchArea (Uav::SearchArea), at the start and when it
-//          changes; CommandList (Ground::CommandList) and CommandTally (Ground::CommandTally), when they
-//          change.
-// Fetches: Gateway/Fleet, and <node>/Pose of each node.
+// Posts:   Geofence (Uav::Geofence), at the start; SearchArea (Uav::SearchArea), when a person wants one, and
+// the
+//          first one of its settings as soon as an aircraft is heard, unless one of them has an area;
+//          CommandList (Ground::CommandList) and CommandTally (Ground::CommandTally), when they change.
+// Fetches: Gateway/Fleet, and <node>/Pose and <node>/MissionState of each node.
+//
+// An area commands the whole fleet, so a restart must not bring an old one back. Aircraft keep the area with
+// the highest number. They report that number, and the next area gets a higher one than all of theirs.
 //
 // It also ends the run when its time is over or on RequestEnd: it sends nothing more, waits for outstanding
 // answers, and shuts all managers down.
@@ -42,8 +46,8 @@ public:
         std::string Node = "ground";
         // The id of the first command, see CommandLog.
         std::uint32_t FirstId = 1;
-        // The first search area of the fleet. The Commander sets its number.
-        Uav::SearchArea Area{};
+        // The first search area of a fleet that has none. The Commander sets its number.
+        std::optional<Uav::SearchArea> Area{};
         // The fence of the fleet; a radius of 0: none.
         Uav::Geofence Fence{};
         // Aircraft that get a Search, once in each incarnation, as soon as they are UP with a fresh pose;
@@ -82,11 +86,14 @@ private:
     static constexpr std::chrono::milliseconds WorkPeriod{100};
     // The Commander sends commands by settings only while the aircraft's pose is younger than this.
     static constexpr double PoseFreshS = 1.0;
+    // Time from the first command of an aircraft in which its MissionState is waited for.
+    static constexpr std::chrono::seconds ReportPatience{5};
 
     // An aircraft that may be commanded.
     struct Aircraft
     {
         std::shared_ptr<Uav::Pose> Pose;
+        std::shared_ptr<Uav::MissionState> State;
         std::optional<std::chrono::nanoseconds>
             First;  // when the first command is due; none: no pose has come
         std::optional<std::chrono::nanoseconds> NextGoto;  // when the next Goto of the period is due
@@ -95,12 +102,17 @@ private:
                                                            // pose; 0: none
         double HeardS = 0;                                 // when it was last UP with a fresh pose in that
                                                            // incarnation
+        std::uint64_t LifeWithArea = 0;                    // in which its area was looked at
+        bool IsReplay = false;                             // it replays a recording
         bool WithoutOrders = false;                        // see NodeCommands
     };
 
     void TakeMessages();
     void Obey(const Order &order);
     void Take(Uav::SearchArea area);
+    void LookAtAreas(std::chrono::nanoseconds elapsed);
+    // True if the first area has not reached that aircraft yet, which would decline to search.
+    bool MayLackArea(const Aircraft &aircraft, std::chrono::nanoseconds elapsed) const;
     void CommandBySettings(std::chrono::nanoseconds elapsed);
     void CommandBySettings(const Rabit::Gateway::NodeStatus &status, std::chrono::nanoseconds elapsed);
     void LookForNewLife(const std::string &node, std::uint64_t life);
@@ -126,7 +138,10 @@ private:
     std::set<std::string> _ordered;  // those that a person has commanded
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
-    std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
+    std::shared_ptr<Uav::SearchArea> _area =
+        std::make_shared<Uav::SearchArea>();  // number 0: none was posted
+    bool _areaIsWanted = false;               // by a person, in this run
+    std::uint32_t _highestArea = 0;           // of the numbers that aircraft report
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
     std::shared_ptr<CommandList> _list = std::make_shared<CommandList>();
 };

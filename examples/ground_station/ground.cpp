@@ -20,6 +20,7 @@
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <boost/asio/steady_timer.hpp>
 
 #include <CLI/CLI.hpp>
 
@@ -44,7 +45,7 @@ struct Options
     Rabit::NodeOptions Node{.ConfigFile = "ground.yaml"};
     int Seconds = 0;
     double CommandPeriodS = 0;
-    std::vector<double> SearchArea{47.3977, 8.5456, 400, 600, 510};
+    std::vector<double> SearchArea;  // empty: none
     std::vector<std::string> Searchers;
     bool ExpectTarget = false;
     std::vector<std::string> Expected;
@@ -65,11 +66,12 @@ void Describe(CLI::App &app, Options &options)
     app.add_option(
         "--search", options.Searchers,
         "Name of an aircraft that is told to search as soon as it is heard, or `*` for all; may be repeated");
-    app.add_option(
-           "--search-area", options.SearchArea,
-           "Where to search at first: latitude and longitude of the middle, lengths in metres to the north "
-           "and to the east, altitude in metres above mean sea level")
-        ->expected(5);
+    app.add_option("--search-area", options.SearchArea,
+                   "Where to search at first, if no aircraft has an area yet: latitude and longitude of the "
+                   "middle, lengths "
+                   "in metres to the north and to the east, altitude in metres above mean sea level")
+        ->expected(5)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
     app.add_flag("--expect-target", options.ExpectTarget,
                  "Fail unless a target was found by one aircraft, validated by another, and followed");
     app.add_option("--expect", options.Expected, "Name of an aircraft that must be there; may be repeated");
@@ -99,8 +101,10 @@ Rabit::GatewayConfig LoadConfig(const Options &options)
 }
 
 // Throws Common::BadInput.
-Uav::SearchArea AreaOf(const Options &options)
+std::optional<Uav::SearchArea> AreaOf(const Options &options)
 {
+    if (options.SearchArea.empty())
+        return std::nullopt;
     constexpr double speedMps = 16;
     constexpr double laneM = 60;
     std::vector<double> numbers = options.SearchArea;
@@ -200,7 +204,8 @@ std::unique_ptr<Ground::WebPage> MakeWebPage(const Options &options, const Rabit
 }
 
 Ground::Commander::Settings CommanderSettings(const Options &options, const std::string &node,
-                                              const Uav::SearchArea &area, const Uav::Geofence &fence)
+                                              const std::optional<Uav::SearchArea> &area,
+                                              const Uav::Geofence &fence)
 {
     Ground::Commander::Settings settings;
     settings.Node = node;
@@ -215,21 +220,34 @@ Ground::Commander::Settings CommanderSettings(const Options &options, const std:
     return settings;
 }
 
-// Ends a run in an orderly way at the first SIGINT or SIGTERM; the second ends the process as usual. The
-// reactor ignores signals that a program handles itself.
+// Ends a run in an orderly way at the first SIGINT, SIGTERM or SIGHUP; one that comes half a second later or
+// more ends the process as usual. The reactor ignores signals that a program handles itself.
 class EndOnSignal
 {
 public:
     explicit EndOnSignal(Ground::Commander &commander)
     {
+        for (const int number : {SIGINT, SIGTERM, SIGHUP})
+        {
+            struct sigaction present = {};
+            sigaction(number, nullptr, &present);
+            if (present.sa_handler != SIG_IGN)  // as it is after nohup
+                _signals.add(number);
+        }
         _signals.async_wait(
             [this, &commander](const boost::system::error_code &error, int)
             {
                 if (error)
                     return;
-                boost::system::error_code ignored;
-                _signals.clear(ignored);
                 commander.RequestEnd();
+                // Sooner ones are the same signal: `timeout` and terminals send one twice.
+                _repeats.expires_after(std::chrono::milliseconds(500));
+                _repeats.async_wait(
+                    [this](const boost::system::error_code &)
+                    {
+                        boost::system::error_code ignored;
+                        _signals.clear(ignored);
+                    });
             });
         _thread = std::thread([this] { _io.run(); });
     }
@@ -243,7 +261,8 @@ public:
 
 private:
     boost::asio::io_context _io{1};
-    boost::asio::signal_set _signals{_io, SIGINT, SIGTERM};
+    boost::asio::signal_set _signals{_io};
+    boost::asio::steady_timer _repeats{_io};
     std::thread _thread;
 };
 
@@ -265,7 +284,7 @@ int Watch(const Options &options)
 {
     Rabit::GatewayConfig config = LoadConfig(options);
     Rabit::RabitLog::SetName(config.Node);
-    const Uav::SearchArea area = AreaOf(options);
+    const std::optional<Uav::SearchArea> area = AreaOf(options);
     const Uav::Geofence fence = FenceOf(config.Parameters);
     std::unique_ptr<Ground::WebServer> server = MakeWebServer(options);
     if (options.Node.Check)

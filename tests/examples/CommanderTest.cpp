@@ -362,18 +362,84 @@ TEST_F(Commander, PublishesItsGeofenceAlsoIfThereIsNone)
     EXPECT_EQ(fence.radius_m, 0);
 }
 
-TEST_F(OrderedCommander, PublishesANewSearchAreaWithANumberOfItsOwn)
+// Aircraft and areas: uav1 reports the number of its area.
+class AreaCommander : public Commander
 {
-    Uav::SearchArea before;
-    ASSERT_TRUE(_workspace.FetchMessage("SearchArea", &before));
-    auto area = std::make_shared<Uav::SearchArea>();
-    area->north_m = 321;
-    ASSERT_TRUE(_workspace.AddMessageToQueue("Commands", area));
-    Run(100ms);
-    Uav::SearchArea after;
-    ASSERT_TRUE(_workspace.FetchMessage("SearchArea", &after));
-    EXPECT_EQ(after.north_m, 321);
-    EXPECT_EQ(after.number, before.number + 1);
+protected:
+    void SetUp() override
+    {
+        Commander::SetUp();
+        _workspace.AddPublishSubscribeMessage("uav1/MissionState", _state);
+    }
+    void Report(std::uint32_t area)
+    {
+        _state->search_area = area;
+        _state->PostMessage();
+        Run(200ms);
+    }
+    void Want(float northM)
+    {
+        auto area = std::make_shared<Uav::SearchArea>();
+        area->north_m = northM;
+        ASSERT_TRUE(_workspace.AddMessageToQueue("Commands", area));
+        Run(200ms);
+    }
+    // The number, and its length to the north.
+    std::pair<std::uint32_t, float> Posted()
+    {
+        Uav::SearchArea area;
+        _workspace.ForceFetchMessage("SearchArea", &area);
+        return area.WasPosted() ? std::pair(area.number, area.north_m) : std::pair(std::uint32_t{0}, 0.0F);
+    }
+    static Ground::Commander::Settings WithArea()
+    {
+        Ground::Commander::Settings settings;
+        settings.Area.emplace().north_m = 100;
+        return settings;
+    }
+
+    std::shared_ptr<Uav::MissionState> _state = std::make_shared<Uav::MissionState>();
+};
+
+TEST_F(AreaCommander, PublishesNoAreaThatNobodyAskedFor)
+{
+    Start({});
+    Run(1s);
+    Report(0);
+    EXPECT_EQ(Posted().first, 0U);
+}
+
+TEST_F(AreaCommander, PublishesTheFirstAreaOnceAnAircraftReportsThatItHasNone)
+{
+    Start(WithArea());
+    Run(5s);
+    EXPECT_EQ(Posted().first, 0U) << "the fleet may have one";
+    Report(0);
+    EXPECT_EQ(Posted(), std::pair(1U, 100.0F));
+}
+
+// As after a restart: the first area of the options is an old one by now.
+TEST_F(AreaCommander, LeavesAFleetTheAreaThatItHas)
+{
+    Start(WithArea());
+    Report(5);
+    Run(5s);
+    EXPECT_EQ(Posted().first, 0U);
+    Want(321);
+    EXPECT_EQ(Posted(), std::pair(6U, 321.0F));
+}
+
+TEST_F(AreaCommander, NumbersAWantedAreaAnewIfAnAircraftComesBackWithAHigherNumber)
+{
+    Start({});
+    Want(321);
+    EXPECT_EQ(Posted(), std::pair(1U, 321.0F));
+    Report(5);
+    EXPECT_EQ(Posted(), std::pair(6U, 321.0F));
+    Report(6);
+    EXPECT_EQ(Posted().first, 6U);
+    Want(400);
+    EXPECT_EQ(Posted(), std::pair(7U, 400.0F));
 }
 
 TEST_F(Commander, TellsASearcherToSearchOnce)

@@ -462,6 +462,29 @@ TEST_F(MissionOf2, TakesANewAreaAtOnce)
     EXPECT_EQ(_output.Courses.back().SpeedMps, 12);
 }
 
+TEST_F(MissionOf2, KeepsItsAreaWhenAnOlderOneComes)
+{
+    GiveArea(5);
+    Uav::SearchArea older = AreaAt(510, 4);
+    older.latitude_deg += 0.1;
+    EXPECT_EQ(_mission->Take(older), "");
+    EXPECT_EQ(State().search_area, 5u);
+    CommandSearch();
+    EXPECT_EQ(State().mode, Mode::MISSION_TRANSIT);
+}
+
+// Its numbers are not reported, so the next one may be lower.
+TEST_F(MissionOf2, TakesAnAreaWithALowerNumberThanOneThatItDeclined)
+{
+    GiveArea(3);
+    Uav::SearchArea wrong;
+    wrong.number = 7;
+    EXPECT_NE(_mission->Take(wrong), "");
+    GiveArea(4);
+    EXPECT_EQ(State().search_area, 4u);
+    EXPECT_EQ(State().area_declined, "");
+}
+
 TEST_F(MissionOf2, KeepsItsAreaWhenANewOneMakesNoSense)
 {
     GiveArea(1);

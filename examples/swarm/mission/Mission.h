@@ -87,7 +87,7 @@ public:
 
     void Update(Situation situation);
     // A new area takes effect at once. An invalid or too low area is declined, and the previous one stays
-    // in force; returns the reason.
+    // in force; returns the reason. One with a lower number is an old one, and changes nothing.
     std::string Take(const Uav::SearchArea &area);
     // Holds from now on, also for the last search area that was heard. An order that is under way goes on.
     // Returns the reason if that area is declined now.

@@ -49,6 +49,8 @@ void Mission::Update(Situation situation)
 
 std::string Mission::Take(const Uav::SearchArea &area)
 {
+    if (_area && area.number < _area->number)
+        return "";
     _heardArea = area;
     JudgeArea();
     if (!_areaDeclined.empty())

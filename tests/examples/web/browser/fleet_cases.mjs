@@ -17,7 +17,7 @@ export async function startFleet({bin, root}, count, {vision = false, groundArgu
       visions.push(new Program(`${bin}/vision`, [...common('vision', `uav${i}.vision`), '--world', `${swarm}/world.yaml`]));
   }
   const ground = new Program(`${bin}/ground`, ['--config', `${root}/examples/ground_station/ground.yaml`, '--domain', domain,
-    '--web', '0', ...groundArguments]);
+    '--web', '0', '--search-area', '47.3977', '8.5456', '400', '600', '510', ...groundArguments]);
   const [url] = await ground.says(/http:\S+/);
   return {uavs, visions, ground, url, startUav};
 }
