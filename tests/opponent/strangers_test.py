@@ -62,7 +62,8 @@ class Trial:
     def __init__(self, options, ground, name):
         self.options, self.ground, self.name = options, ground, name
         self.flight = flights.Flight(types.SimpleNamespace(ledger_node=options.ledger_node,
-                                                           deadline=time.monotonic() + LIMIT_S), ground, dict(FLEET))
+                                                           deadline=time.monotonic() + LIMIT_S + options.seconds),
+                                     ground, dict(FLEET))
         self.wrong = []
         self.seen = {}
 
@@ -116,6 +117,7 @@ class Trial:
             opponent.wait_for(re.compile(r"heard \d+").fullmatch, LIMIT_S)
             begin = Look(flight, self.changes())
             largest = dict(begin.memory)
+            curve = []  # growth of the node that grew most, minute by minute
             half = time.monotonic() + options.seconds / 2
             meetings = []
             while opponent.running():
@@ -123,6 +125,8 @@ class Trial:
                     if not self.ground.processes[node].running():
                         raise flights.Failure("each node to live", f"{node} ended with {self.ground.processes[node].exit_code(5)}")
                     largest[node] = max(largest[node], memory_mb(self.ground.processes[node].pid))
+                if time.monotonic() - begin.when > 60 * (len(curve) + 1):
+                    curve.append(round(max(memory_mb(self.ground.processes[node].pid) - begin.memory[node] for node in FLEET), 1))
                 if not meetings and time.monotonic() > half:
                     meetings = [self.newcomer(name) for name in NEWCOMERS]
                 time.sleep(0.2)
@@ -137,7 +141,7 @@ class Trial:
         busy = {node: (end.processor[node] - begin.processor[node]) / took -
                 (quiet.processor[node] - first.processor[node]) / (quiet.when - first.when) for node in FLEET}
         extra = max(0, end.out - begin.out - idle * took - len(NEWCOMERS) * newcomer_bytes)
-        self.seen |= {"in": inside, "extra out": round(extra), "memory": grown, "processor": busy, "meetings": meetings,
+        self.seen |= {"in": inside, "extra out": round(extra), "memory": grown, "memory each minute": curve, "processor": busy, "meetings": meetings,
                       "presence": end.changes - begin.changes}
         self.judge(grown, busy, meetings, inside, extra, self.changes()[begin.changes:])
         flight.exchange()
