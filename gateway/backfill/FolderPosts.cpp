@@ -218,8 +218,7 @@ PostStore::Found FolderPosts::Read(const std::string &message, std::uint64_t inc
     {
         damaged.End = behind->first;
     }
-    // An answer is about one range. What is behind the damaged part comes first, then the part, then the
-    // rest.
+    // An answer is about one range. Posts behind the damaged part come first, then the part, then the rest.
     const bool isWithin = damaged.End > found.First;
     if (isWithin && damaged.End == range.End)
     {

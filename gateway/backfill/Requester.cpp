@@ -210,7 +210,7 @@ std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &n
         answer.size == PostAnswers::NeverReadable && answer.from >= asked.What.from &&
         answer.from < answer.to && answer.to <= asked.What.to)
     {
-        // Not whole, but there is nothing to ask for. What is older is asked for next.
+        // Not whole, but there is nothing to ask for. Older posts are asked for next.
         _ledger.SetWhole({name, answer.name, answer.incarnation}, {answer.from, answer.to});
         wanted->second.Refusal.clear();
         wanted->second.Large.reset();

@@ -284,7 +284,7 @@ LinkRefusal LinkDriver::Enqueue(const std::string &node, const std::string &queu
 
 void LinkDriver::Send(const LinkFrame &frame, std::string_view queue)
 {
-    // With one path nobody asks whose messages they are.
+    // A gateway with one path has no use for the queue of a frame.
     _outbox.Add(frame, _second.Choose ? queue : frame.HasData ? frame.Data.Queue : "");
 }
 

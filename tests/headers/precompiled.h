@@ -1,7 +1,8 @@
 #pragma once
 
-// What most tests include; the test programs share it as one precompiled header (tests/CMakeLists.txt). A
-// test still includes what it uses, since the presets with sanitizers compile without.
+// The headers that most tests include. Test programs share them as one precompiled header
+// (tests/CMakeLists.txt). A test still includes what it uses, since the presets with sanitizers compile
+// without.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

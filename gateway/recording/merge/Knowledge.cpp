@@ -140,7 +140,7 @@ Knowledge::Knowledge(const Mcap::Contents &contents)
         const auto life =
             std::find_if(Lives.begin(), Lives.end(),
                          [&given = channel](const KnowerLife &one) { return IsOf(given, one); });
-        // What came later was not known then.
+        // A backfilled post was not known then.
         if ((described.Kind != Mcap::ChannelKind::Mirrored && described.Kind != Mcap::ChannelKind::Posted) ||
             node.empty() || life == Lives.end())
         {

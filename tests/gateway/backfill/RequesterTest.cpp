@@ -259,7 +259,7 @@ TEST_F(LargePostTest, IsGivenUpIfItsFileIsDamagedMeanwhile)
     EXPECT_FALSE((Range{question.from, question.to}.Contains(1500)));
 }
 
-// What is older than the damage comes nevertheless.
+// Older posts come nevertheless.
 TEST_F(RequesterTest, APartThatCanNeverBeReadIsLeftOutAndTold)
 {
     const Question question = AskForPosts();
