@@ -361,8 +361,7 @@ LinkReceiver *LinkPeer::FindReceiver(std::string_view queue) const
 LinkSender &LinkPeer::AddSender(std::string_view queue, const LinkOptions &options)
 {
     const auto number = static_cast<std::uint32_t>(_byNumber.size() + 1);
-    auto sender =
-        std::make_unique<LinkSender>(_context, _path, _ownLife, number, _name, std::string(queue), options);
+    auto sender = std::make_unique<LinkSender>(_context, _path, number, _name, std::string(queue), options);
     _byNumber.push_back(sender.get());
     return *_senders.emplace(std::string(queue), std::move(sender)).first->second;
 }

@@ -17,12 +17,10 @@ constexpr int LongEnoughForStart = 2;
 
 }  // namespace
 
-LinkSender::LinkSender(LinkContext &context, PathControl &path, const std::uint64_t &ownLife,
-                       std::uint32_t number, std::string destination, std::string queue,
-                       const LinkOptions &options)
+LinkSender::LinkSender(LinkContext &context, PathControl &path, std::uint32_t number, std::string destination,
+                       std::string queue, const LinkOptions &options)
     : _context(context),
       _path(path),
-      _ownLife(ownLife),
       _number(number),
       _destination(std::move(destination)),
       _queue(std::move(queue)),

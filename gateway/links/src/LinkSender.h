@@ -22,10 +22,9 @@ namespace Rabit
 class LinkSender
 {
 public:
-    // `path` and `ownLife`, this node's incarnation for the destination, must outlive the object. `number` is
-    // the number of this link among those to the destination.
-    LinkSender(LinkContext &context, PathControl &path, const std::uint64_t &ownLife, std::uint32_t number,
-               std::string destination, std::string queue, const LinkOptions &options);
+    // `path` must outlive the object. `number` is the number of this link among those to the destination.
+    LinkSender(LinkContext &context, PathControl &path, std::uint32_t number, std::string destination,
+               std::string queue, const LinkOptions &options);
 
     // Rule S1. `type` must live as long as this object.
     LinkRefusal Enqueue(std::uint64_t id, const std::string &type, LinkPayload payload, LinkTime now);
@@ -119,7 +118,6 @@ private:
 
     LinkContext &_context;
     PathControl &_path;
-    const std::uint64_t &_ownLife;
     const std::uint32_t _number;
     const std::string _destination;
     const std::string _queue;
@@ -128,7 +126,7 @@ private:
     TypeNumbers _types;
     bool _isKnown = false;  // the receiver knows which queue the number means
 
-    std::uint64_t _base = 1;  // first number of this stream; its incarnation is always _ownLife
+    std::uint64_t _base = 1;  // first number of this stream; its incarnation is the present one
     std::size_t _inFlight = 0;
     std::size_t _lost = 0;  // parts that are to be sent again
     std::size_t _held = 0;  // parts that the receiver has, beyond a gap
