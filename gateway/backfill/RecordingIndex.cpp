@@ -64,23 +64,21 @@ try
     std::uint64_t chunkLength = 0;
     // A chunk is taken with all of its indexes, or later.
     std::uint64_t whole = offset;
-    std::vector<Mcap::Bytes> indexes;
+    std::vector<Mcap::MessageIndex> indexes;
     std::uint64_t endTime = 0;
     // False: the chunk cannot be read now.
     const auto takeChunk = [&]
     {
         const bool areKnown = std::all_of(indexes.begin(), indexes.end(),
-                                          [&file](const Mcap::Bytes &index)
-                                          {
-                                              const auto read = Mcap::Read<Mcap::MessageIndex>(index);
-                                              return !read || file.Channels.contains(read->ChannelId) ||
-                                                     file.OtherChannels.contains(read->ChannelId);
+                                          [&file](const Mcap::MessageIndex &index) {
+                                              return file.Channels.contains(index.ChannelId) ||
+                                                     file.OtherChannels.contains(index.ChannelId);
                                           });
         if (!areKnown && LearnChannels(file, chunk, chunkLength) == Access::Failed)
         {
             return false;
         }
-        for (const Mcap::Bytes &index : indexes)
+        for (const Mcap::MessageIndex &index : indexes)
         {
             TakeIndex(file, chunk, chunkLength, index);
         }
@@ -123,7 +121,10 @@ try
         }
         else if (code == Mcap::Opcode::MessageIndex)
         {
-            indexes.push_back(std::move(content));
+            if (auto index = Mcap::Read<Mcap::MessageIndex>(content); index && !index->Entries.empty())
+            {
+                indexes.push_back(std::move(*index));
+            }
         }
         else if (code == Mcap::Opcode::Metadata)
         {
@@ -162,18 +163,13 @@ catch (const std::runtime_error &)
     // It was removed meanwhile.
 }
 
-void RecordingIndex::TakeIndex(File &file, std::uint64_t chunk, std::uint64_t length, Mcap::ByteView content)
+void RecordingIndex::TakeIndex(File &file, std::uint64_t chunk, std::uint64_t length,
+                               const Mcap::MessageIndex &index)
 {
-    const auto index = Mcap::Read<Mcap::MessageIndex>(content);
-    if (!index || index->Entries.empty())
+    if (!file.OtherChannels.contains(index.ChannelId))
     {
-        return;
-    }
-    const std::uint16_t channel = index->ChannelId;
-    if (!file.OtherChannels.contains(channel))
-    {
-        const auto [first, last] = std::minmax_element(index->Entries.begin(), index->Entries.end());
-        file.Pieces.push_back({chunk, length, channel, first->first, last->first});
+        const auto [first, last] = std::minmax_element(index.Entries.begin(), index.Entries.end());
+        file.Pieces.push_back({chunk, length, index.ChannelId, first->first, last->first});
     }
 }
 

@@ -86,7 +86,7 @@ private:
     };
 
     void ReadOn(File &file, bool mayGrow);
-    void TakeIndex(File &file, std::uint64_t chunk, std::uint64_t length, Mcap::ByteView content);
+    void TakeIndex(File &file, std::uint64_t chunk, std::uint64_t length, const Mcap::MessageIndex &index);
     Access LearnChannels(File &file, std::uint64_t chunk, std::uint64_t length);
     void LearnFromSummary(File &file);
     void Learn(File &file, const Mcap::Channel &channel) const;

@@ -96,9 +96,9 @@ void SeriesStreams::SetPaused(bool isPaused)
             early.swap(_early);
         }
     }
-    for (const auto &[series, live] : early)
+    for (auto &[series, live] : early)
     {
-        Record(series, live);
+        Record(series, live.SourceTime, live.PostedAt, std::move(live.Sample));
     }
 }
 
@@ -109,32 +109,32 @@ void SeriesStreams::TakeLive(const GatewayTap::MirroredSample &sample)
         return;
     }
     const Series series{std::string(sample.Node), std::string(sample.Message), sample.Incarnation};
-    const auto copy = [&sample] {
-        return Early{sample.SourceTime, sample.PostedAt, {sample.Sample.begin(), sample.Sample.end()}};
-    };
-    if (_isPaused)
+    Mcap::Bytes bytes(sample.Sample.begin(), sample.Sample.end());
     {
         const std::lock_guard lock(_mutex);
-        if (!_hasBegun && (_early.contains(series) || _early.size() < MostEarly))
+        if (_isPaused)
         {
-            _early[series] = copy();
+            if (!_hasBegun && (_early.contains(series) || _early.size() < MostEarly))
+            {
+                _early[series] = Early{sample.SourceTime, sample.PostedAt, std::move(bytes)};
+            }
+            return;
         }
-        return;
     }
-    Record(series, copy());
+    Record(series, sample.SourceTime, sample.PostedAt, std::move(bytes));
 }
 
-void SeriesStreams::Record(const Series &series, const Early &live)
+void SeriesStreams::Record(const Series &series, std::int64_t sourceTime, std::chrono::nanoseconds posted,
+                           Mcap::Bytes sample)
 {
-    const Stamp stamp = StampOf(live.SourceTime);
+    const Stamp stamp = StampOf(sourceTime);
     if (!_ledger->Take(series, stamp))
     {
         return;
     }
-    const std::uint64_t postedAt = _target->At(live.PostedAt);
-    const std::uint32_t stream =
-        StreamOf(series, true, static_cast<std::int64_t>(postedAt) - live.SourceTime);
-    if (!_target->Put(stream, postedAt, live.Sample, static_cast<std::uint32_t>(stamp)))
+    const std::uint64_t postedAt = _target->At(posted);
+    const std::uint32_t stream = StreamOf(series, true, static_cast<std::int64_t>(postedAt) - sourceTime);
+    if (!_target->Put(stream, postedAt, std::move(sample), static_cast<std::uint32_t>(stamp)))
     {
         _ledger->Undo(series, stamp);
     }

@@ -59,10 +59,11 @@ private:
     {
         std::int64_t SourceTime = 0;
         std::chrono::nanoseconds PostedAt{0};
-        std::vector<std::uint8_t> Sample;
+        Mcap::Bytes Sample;
     };
 
-    void Record(const Series &series, const Early &live);
+    void Record(const Series &series, std::int64_t sourceTime, std::chrono::nanoseconds posted,
+                Mcap::Bytes sample);
     std::uint32_t StreamOf(const Series &series, bool isLive, std::int64_t sourceToLog);
 
     const GatewayConfig _config;
@@ -70,10 +71,10 @@ private:
     const std::shared_ptr<Ledger> _ledger;
     std::set<std::string, std::less<>> _messages;
     const std::uint32_t _marks;
-    std::atomic<bool> _isPaused{true};
     std::atomic<std::uint64_t> _incredible{0};
     std::atomic<std::uint64_t> _tooLarge{0};
-    std::mutex _mutex;
+    std::mutex _mutex;  // guards the members below
+    bool _isPaused = true;
     std::map<std::pair<Series, bool>, std::uint32_t> _streams;
     bool _hasBegun = false;
     std::map<Series, Early> _early;
