@@ -27,8 +27,7 @@ namespace Ground
 // Sends:   Uav::Goto, Uav::GoHome and Uav::Search to the queue MissionControl of an aircraft: those ordered,
 //          and those that its settings demand.
 // Posts:   Geofence (Uav::Geofence), at the start; SearchArea (Uav::SearchArea), when a person wants one, and
-// the
-//          first one of its settings as soon as an aircraft is heard, unless one of them has an area;
+//          the first one of its settings once all that are there have reported that they have none;
 //          CommandList (Ground::CommandList) and CommandTally (Ground::CommandTally), when they change.
 // Fetches: Gateway/Fleet, and <node>/Pose and <node>/MissionState of each node.
 //

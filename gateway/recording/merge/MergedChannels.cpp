@@ -6,6 +6,7 @@
 
 namespace Rabit::Merge
 {
+
 MergedChannels::MergedChannels(const Lives &lives, const MergePlan &plan, Mcap::McapWriter &writer)
     : _lives(lives), _plan(plan), _writer(writer)
 {
