@@ -28,8 +28,9 @@ public:
                                                           SampleHandler handler) = 0;
     // The addresses of each Rabit session that it knows now. Any thread.
     virtual std::vector<PeerPlace> PeerPlaces() const = 0;
-    // The hosts whose programs are refused something for some time (Ledger.h), as problems of the network.
-    virtual std::vector<SettingsProblem> Refusals() const { return {}; }
+    // Problems of the network that it has now: hosts whose programs are refused something for some time
+    // (Ledger.h), more endpoints than other nodes are told of (rtps/Meeting.h). Any thread.
+    virtual std::vector<SettingsProblem> Problems() const { return {}; }
 };
 
 class RejoiningBackend

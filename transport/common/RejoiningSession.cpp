@@ -142,12 +142,12 @@ std::vector<SettingsProblem> RejoiningSession::NetworkProblems() const
         const std::lock_guard lock(_mutex);
         problems = _problems;
     }
-    // While the session joins the network anew, there is none that refuses.
+    // While the session joins the network anew, there is none that has problems.
     const std::unique_lock lock(_shared->Structure, std::try_to_lock);
     if (lock.owns_lock() && _shared->Inner != nullptr)
     {
-        const auto refusals = _shared->Inner->Refusals();
-        problems.insert(problems.end(), refusals.begin(), refusals.end());
+        const auto inner = _shared->Inner->Problems();
+        problems.insert(problems.end(), inner.begin(), inner.end());
     }
     return problems;
 }

@@ -35,7 +35,7 @@ public:
         return std::make_unique<Reader>(_core, topic, qos, partitions, std::move(handler));
     }
     std::vector<PeerPlace> PeerPlaces() const override { return _core->PeerPlaces(); }
-    std::vector<SettingsProblem> Refusals() const override { return _core->Refusals(); }
+    std::vector<SettingsProblem> Problems() const override { return _core->Problems(); }
 
 private:
     const std::shared_ptr<Core> _core;

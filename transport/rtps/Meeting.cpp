@@ -208,6 +208,26 @@ void Meeting::Lost(const GuidPrefix &peer)
     Spoke(peer);
 }
 
+// Packs the card with as many endpoints as it holds.
+void Meeting::Pack(TimePoint now)
+{
+    _told.Endpoints = _own.Endpoints();
+    std::size_t most = std::min(OwnCard::MostEndpoints, _own.Size());
+    auto packed = PackCard(_own.Message(most));
+    while (packed.empty() && most > 0)
+    {
+        most = most > _told.Endpoints ? _told.Endpoints : most * 7 / 8;
+        packed = PackCard(_own.Message(most));
+    }
+    _told.InCard = std::min(most, _told.Endpoints);
+    _exchange.SetOwn(std::move(packed), now);
+}
+
+std::optional<Meeting::Told> Meeting::CardIsFull() const
+{
+    return _told.InCard < _told.Endpoints ? std::optional(_told) : std::nullopt;
+}
+
 std::optional<Meeting::TimePoint> Meeting::LocalDue() const
 {
     return Earliest({_packAt, _replay.Due()});
@@ -218,7 +238,7 @@ std::vector<Meeting::Local> Meeting::TakeLocal(TimePoint now)
     if (IsBy(_packAt, now))
     {
         _packAt.reset();
-        _exchange.SetOwn(PackCard(_own.Message()), now);
+        Pack(now);
     }
     std::vector<Local> taken;
     for (CardReplay::Message &message : _replay.TakeDue(now, _own))

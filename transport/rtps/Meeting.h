@@ -86,6 +86,15 @@ public:
     // name from the network must then be ignored.
     bool IsReplayed(const GuidPrefix &peer) const { return _replay.Has(peer); }
 
+    // The own endpoints, and those of them that the card holds.
+    struct Told
+    {
+        std::size_t Endpoints = 0;
+        std::size_t InCard = 0;
+    };
+    // Empty unless the card is too small for all endpoints. Other nodes do not learn of those beyond.
+    std::optional<Told> CardIsFull() const;
+
     // For the own implementation.
     struct Local
     {
@@ -111,6 +120,7 @@ public:
     bool WasEnded(const GuidPrefix &peer) const { return _ended.Find(peer) != nullptr; }
 
 private:
+    void Pack(TimePoint now);
     bool IsThere(const GuidPrefix &peer, const HostAddress &from);
     bool IsForPrograms(const GuidPrefix &to, TimePoint now);
     void Say(const EndpointSubmessage &said, std::span<const std::uint8_t> header, TimePoint now);
@@ -124,6 +134,7 @@ private:
     CardReplay _replay;
     DiscoveryFragments _fragments;  // of the own implementation's announcements
     std::optional<TimePoint> _packAt;
+    Told _told;
     std::map<GuidPrefix, Claim<HostAddress>> _places;  // source addresses of their card messages
     std::map<GuidPrefix, TimePoint> _programs;         // without a card: when each was last announced
     std::map<GuidPrefix, std::string> _superseded;

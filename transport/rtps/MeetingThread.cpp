@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -56,6 +57,24 @@ bool MeetingThread::WasEnded(const GuidPrefix &peer) const
 {
     const std::lock_guard lock(_mutex);
     return _meeting.WasEnded(peer);
+}
+
+std::optional<SettingsProblem> MeetingThread::Problem() const
+{
+    const std::lock_guard lock(_mutex);
+    const auto full = _meeting.CardIsFull();
+    if (!full)
+    {
+        return std::nullopt;
+    }
+    return SettingsProblem{
+        .Setting = "endpoints",
+        .Entry = "",
+        .Text = "this node has " + std::to_string(full->Endpoints) +
+                " writers and readers, and other nodes are told of the first " +
+                std::to_string(full->InCard) +
+                ", which is the most that one node can announce: publish, subscribe, accept and send less, "
+                "or divide it into several nodes"};
 }
 
 void MeetingThread::HeardUnknown(const GuidPrefix &peer)

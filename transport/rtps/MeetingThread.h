@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/transport/DiscoveryTurns.h>
+#include <rabit/transport/Transport.h>
 
 #include <functional>
 #include <memory>
@@ -48,6 +49,8 @@ public:
     // The implementation has lost the participant.
     void Lost(const GuidPrefix &peer);
     bool WasEnded(const GuidPrefix &peer) const;
+    // Meeting::CardIsFull, as a problem of the network. Any thread.
+    std::optional<SettingsProblem> Problem() const;
 
     // PeerObserver
     void HeardUnknown(const GuidPrefix &peer) override;

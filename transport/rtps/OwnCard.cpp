@@ -75,7 +75,8 @@ void OwnCard::Put(const EndpointSubmessage &said)
     {
         return;
     }
-    endpoint = {.Number = said.Said.First,
+    endpoint = {.First = endpoint.First > 0 ? endpoint.First : said.Said.First,
+                .Number = said.Said.First,
                 .Content = content,
                 .Alive = said.Said.Alive,
                 .Announcement = {said.Whole.begin(), said.Whole.end()}};
@@ -129,15 +130,30 @@ bool OwnCard::TakeChanged()
     return !_participant.empty() && std::exchange(_changed, false);
 }
 
-std::vector<std::uint8_t> OwnCard::Message() const
+std::vector<std::uint8_t> OwnCard::Message(std::size_t most) const
 {
-    std::vector<std::uint8_t> message = _header;
-    AppendAnnouncement(message, _participant, 1);
+    std::vector<const Endpoint *> chosen;
     for (const auto &[key, endpoint] : _endpoints)
     {
-        AppendAnnouncement(message, endpoint.Announcement, endpoint.Number);
+        chosen.push_back(&endpoint);
+    }
+    std::stable_sort(chosen.begin(), chosen.end(),
+                     [](const Endpoint *a, const Endpoint *b)
+                     { return a->Alive != b->Alive ? a->Alive : a->First < b->First; });
+    chosen.resize(std::min(chosen.size(), most));
+    std::vector<std::uint8_t> message = _header;
+    AppendAnnouncement(message, _participant, 1);
+    for (const Endpoint *const endpoint : chosen)
+    {
+        AppendAnnouncement(message, endpoint->Announcement, endpoint->Number);
     }
     return message;
+}
+
+std::size_t OwnCard::Endpoints() const
+{
+    return static_cast<std::size_t>(std::count_if(_endpoints.begin(), _endpoints.end(),
+                                                  [](const auto &each) { return each.second.Alive; }));
 }
 
 }  // namespace Rabit::Rtps

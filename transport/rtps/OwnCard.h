@@ -21,8 +21,9 @@ namespace Rabit::Rtps
 class OwnCard
 {
 public:
-    // The newest announcements that an endpoint is gone are kept, so that peers learn of it from the card. If
-    // there are more endpoints than this, those gone for longest are left out.
+    // Endpoints in a card; the guard accepts as many of one participant (Ledger.h). The newest announcements
+    // that an endpoint is gone are kept, so that peers learn of it from the card. If there are more endpoints
+    // than this, those gone for longest are left out.
     static constexpr std::size_t MostEndpoints = 1024;
 
     // Takes a message by which the participant announces itself.
@@ -41,8 +42,12 @@ public:
     // True if Message has changed since the last call. False as long as there is no announcement of the
     // participant.
     bool TakeChanged();
-    // The card as one RTPS message.
-    std::vector<std::uint8_t> Message() const;
+    // The card as one RTPS message, with at most so many endpoints: those that were announced first, and
+    // those that are gone behind all others. So an endpoint that is in a card stays in the next one.
+    std::vector<std::uint8_t> Message(std::size_t most = MostEndpoints) const;
+    // Endpoints that are not gone, and all that are known.
+    std::size_t Endpoints() const;
+    std::size_t Size() const { return _endpoints.size(); }
 
 private:
     struct Writer
@@ -53,7 +58,8 @@ private:
     };
     struct Endpoint
     {
-        std::int64_t Number = 0;
+        std::int64_t First = 0;   // number of its first announcement
+        std::int64_t Number = 0;  // of the newest one
         std::uint64_t Content = 0;
         bool Alive = true;
         std::vector<std::uint8_t> Announcement;

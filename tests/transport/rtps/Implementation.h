@@ -31,6 +31,13 @@ public:
     {
         Add(Rabit::Rtps::PublicationsWriter, entity, RtpsBytes::WriterData(entity, _name));
     }
+    // With further parameters in the announcement.
+    void AddWriter(EntityId entity, const Bytes &parameters)
+    {
+        Bytes data = RtpsBytes::WriterData(entity, _name);
+        data.insert(data.end() - 4, parameters.begin(), parameters.end());  // before the sentinel
+        Add(Rabit::Rtps::PublicationsWriter, entity, std::move(data));
+    }
     void Announce() { _send(RtpsBytes::ParticipantMessage(_name)); }
     // Sends a heartbeat to each peer that has not acknowledged everything. Call it once a second.
     void Tick()

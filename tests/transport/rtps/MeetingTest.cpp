@@ -295,7 +295,75 @@ TEST_F(MeetingOfTwo, ANodeThatGoesOnAfterItsGoodbyeIsMetAgain)
     One.Dds->Announce();
     Channel.Run(1900ms);
     EXPECT_FALSE(Two.Meet->IsReplayed(One.Self));
-    EXPECT_TRUE(Channel.Until([&] { return Two.Meet->IsReplayed(One.Self); }));
+    EXPECT_TRUE(Channel.Until([&] { return Two.Meet->IsReplayed(One.Self); }, 1s));
+}
+
+// A node with many endpoints, and one that learns of them.
+class MeetingOfMany : public testing::Test
+{
+protected:
+    // Each announcement has so many bytes of its own, at random, and so many that are the same in all.
+    void Add(std::uint32_t count, std::size_t random, std::size_t same)
+    {
+        std::mt19937 numbers(1);
+        for (std::uint32_t i = 1; i <= count; ++i)
+        {
+            Bytes data(random + same);
+            std::generate_n(data.begin(), random, [&] { return static_cast<std::uint8_t>(numbers()); });
+            One.Dds->AddWriter(
+                i << 8 | 3,
+                RtpsBytes::Parameter(
+                    0x002c,
+                    RtpsBytes::Join({RtpsBytes::U32(static_cast<std::uint32_t>(data.size())), data})));
+        }
+        One.Dds->Announce();
+        Two.Dds->Announce();
+    }
+    std::set<EntityId> Known() const { return Two.Dds->EndpointsOf(One.Self); }
+
+    Air Channel{1};
+    Air::Node &One = Channel.Add(1, 0);
+    Air::Node &Two = Channel.Add(2, 1);
+};
+
+TEST_F(MeetingOfMany, AsManyEndpointsAsTheGuardAcceptsGoInOneCard)
+{
+    Add(OwnCard::MostEndpoints, 20, 260);
+    EXPECT_TRUE(Channel.Until([&] { return Known().size() == OwnCard::MostEndpoints; }));
+    EXPECT_FALSE(One.Meet->CardIsFull());
+}
+
+TEST_F(MeetingOfMany, OfMoreEndpointsTheFirstOnesGoInTheCard)
+{
+    Add(OwnCard::MostEndpoints + 100, 0, 40);
+    EXPECT_TRUE(Channel.Until([&] { return Known().size() == OwnCard::MostEndpoints; }));
+    EXPECT_EQ(*Known().rbegin(), OwnCard::MostEndpoints << 8 | 3);
+    const auto full = One.Meet->CardIsFull();
+    ASSERT_TRUE(full.has_value());
+    EXPECT_EQ(full->Endpoints, OwnCard::MostEndpoints + 100);
+    EXPECT_EQ(full->InCard, OwnCard::MostEndpoints);
+}
+
+TEST_F(MeetingOfMany, ANodeWhoseEndpointsPackToTooMuchIsMetAllTheSame)
+{
+    Add(500, 200, 0);
+    EXPECT_TRUE(Channel.Until([&] { return Known().size() >= 250; }));
+    Channel.Run(1s);
+    const auto full = One.Meet->CardIsFull();
+    ASSERT_TRUE(full.has_value());
+    EXPECT_EQ(full->Endpoints, 500u);
+    EXPECT_EQ(full->InCard, Known().size());
+}
+
+TEST_F(MeetingOfMany, WhatIsInACardStaysInTheNextOne)
+{
+    Add(500, 200, 0);
+    EXPECT_TRUE(Channel.Until([&] { return Known().size() >= 250; }));
+    Channel.Run(1s);
+    const auto before = Known();
+    One.Dds->AddWriter(1u << 8 | 3, RtpsBytes::Parameter(0x002c, RtpsBytes::U32(0)));  // it has changed
+    Channel.Run(5s);
+    EXPECT_EQ(Known(), before);
 }
 
 TEST(Meeting, ALostCardIsAskedFor)

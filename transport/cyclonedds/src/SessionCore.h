@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "AnnouncementThread.h"
 #include "Entity.h"
@@ -28,6 +29,8 @@ public:
     SessionCore(const SessionCore &) = delete;
     SessionCore &operator=(const SessionCore &) = delete;
 
+    // As BackendSession.
+    std::vector<SettingsProblem> Problems() const;
     dds_entity_t Participant() const { return _participant.Get(); }
 
 private:

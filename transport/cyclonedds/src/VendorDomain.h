@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "DirectAnnouncements.h"
@@ -53,6 +54,8 @@ public:
     {
         return _meets && _meeting.IsReplayed(participant);
     }
+    // MeetingThread::Problem
+    std::optional<SettingsProblem> Problem() const { return _meeting.Problem(); }
     // The vendor knows another participant, and does not know it any more. Call from a listener of a built-in
     // topic.
     void Came(const Rtps::GuidPrefix &participant);

@@ -8,6 +8,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "AnnouncementTimer.h"
 #include "GuardedUdp.h"
@@ -32,6 +33,8 @@ public:
     SessionCore(const SessionCore &) = delete;
     SessionCore &operator=(const SessionCore &) = delete;
 
+    // As BackendSession.
+    std::vector<SettingsProblem> Problems() const;
     // VendorCore::Close
     void Close();
 
