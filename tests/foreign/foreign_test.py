@@ -54,6 +54,9 @@ CYCLONE = """<CycloneDDS><Domain><General><Interfaces><NetworkInterface address=
 <Discovery><LeaseDuration>3s</LeaseDuration><ParticipantIndex>auto</ParticipantIndex>
 <MaxAutoParticipantIndex>50</MaxAutoParticipantIndex><Peers><Peer address="127.0.0.1"/></Peers></Discovery></Domain>
 </CycloneDDS>"""
+# The guard cuts leases to five minutes. Within this time only the goodbye of a program can tell that it has ended.
+GOODBYE_S = 120
+CYCLONE_OF_LONG_LEASE = CYCLONE.replace("<LeaseDuration>3s<", "<LeaseDuration>1hr<")
 
 
 class Row:
@@ -76,11 +79,11 @@ class Row:
         return self.processes.start([self.node, self.config])
 
     def start_plain(self):
-        return self.processes.start([self.plain, self.domain, *TOPICS], {"CYCLONEDDS_URI": CYCLONE})
+        return self.processes.start([self.plain, self.domain, *TOPICS], {"CYCLONEDDS_URI": CYCLONE_OF_LONG_LEASE})
 
-    def wait(self, process, pattern, since=0.0):
+    def wait(self, process, pattern, since=0.0, limit=LIMIT_S):
         try:
-            return process.wait_for(re.compile(pattern).fullmatch, LIMIT_S, since)
+            return process.wait_for(re.compile(pattern).fullmatch, limit, since)
         except AssertionError as error:
             raise AssertionError(f"no `{pattern}`: {error}") from error
 
@@ -118,7 +121,7 @@ class Row:
         again, _ = self.wait(node, "foreign rt/fmu/out/setpoint UP", stale)
 
         assert plain.terminate() == 0
-        gone, _ = self.wait(node, "foreign rt/chatter LOST no program writes .*", again)
+        gone, _ = self.wait(node, "foreign rt/chatter LOST no program writes .*", again, GOODBYE_S)
         self.all_flow(node, self.start_plain(), gone)
 
         # The node starts while the programs run.

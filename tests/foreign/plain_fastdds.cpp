@@ -163,6 +163,8 @@ void Run(int argc, char **argv)
     dds::DomainParticipantQos qos;
     // The other program of a test may share the network namespace without sharing the process.
     qos.transport().use_builtin_transports = true;
+    // Only its goodbye tells that the program has ended.
+    qos.wire_protocol().builtin.discovery_config.leaseDuration = eprosima::fastrtps::Duration_t{3600, 0};
     dds::DomainParticipant *participant = dds::DomainParticipantFactory::get_instance()->create_participant(
         static_cast<dds::DomainId_t>(std::atoi(argv[1])), qos);
     dds::Publisher *publisher = participant->create_publisher(dds::PUBLISHER_QOS_DEFAULT);

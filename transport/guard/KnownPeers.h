@@ -53,8 +53,7 @@ public:
     // were heard would stay. The peer must be known.
     std::int64_t AnnouncementOf(const GuidPrefix &peer, std::int64_t number);
     // The same for the peer's goodbye. It is always news, and so is the next announcement: a replay of the
-    // peer's card has numbers of its own. So an announcement that was held up for longer than a goodbye is
-    // remembered (RecentGoodbyes) brings the peer back for its lease.
+    // peer's card has numbers of its own. RecentGoodbyes keeps back announcements that were held up.
     std::int64_t GoodbyeOf(const GuidPrefix &peer, std::int64_t number);
 
     // The peer, which must be known, announced a writer or a reader; `digest` is the hash of the

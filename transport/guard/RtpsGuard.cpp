@@ -1,10 +1,12 @@
 #include "guard/RtpsGuard.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/RtpsReader.h"
 #include "common/RtpsWriter.h"
 #include "guard/DiscoveryCheck.h"
+#include "guard/KeyedEnd.h"
 #include "guard/PlainCheck.h"
 #include "guard/ProtectionCheck.h"
 #include "guard/TokenCheck.h"
@@ -110,9 +112,13 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
                 return {};
         }
     }
-    if (IsCounted(passage) && passage.Whence == Origin::Network)
+    if (passage.Whence == Origin::Network)
     {
-        _ledger->Came(passage.Sender, passage.Datagram.size());
+        _goodbyes->Heard(passage.Sender, passage.Now);
+        if (IsCounted(passage))
+        {
+            _ledger->Came(passage.Sender, passage.Datagram.size());
+        }
     }
     if (!passage.Useful)
     {
@@ -209,6 +215,14 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     if (IsReplayed(delivery, passage))
     {
         return Verdict::Ignore;
+    }
+    if (_vendor == Vendor::FastDds)
+    {
+        if (auto end = WithKeyHash(passage.Header, passage.Destination, submessage, delivery); !end.empty())
+        {
+            passage.Whole.push_back(std::move(end));
+            return Verdict::Ignore;
+        }
     }
     auto verdict = Verdict::Pass;
     const bool isHandshake = IsSecured() && delivery.Writer == HandshakeWriter;
@@ -396,6 +410,11 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
             return Verdict::Refuse;  // a participant does not lose its card
         }
     }
+    // A card has come from a participant that goes on (Meeting).
+    if (isFromNetwork && !_goodbyes->Heard(passage.Sender, passage.Now))
+    {
+        return Verdict::Ignore;
+    }
     const bool isNew = IsCounted(passage) && !_ledger->Has(passage.Sender);
     if (isNew && !_ledger->Comes(passage.Sender, passage.From,
                                  passage.Whence == Origin::Card ? passage.Datagram.size() : 0, passage.Now))
@@ -462,39 +481,6 @@ bool RtpsGuard::GroupReaches(const HostAddress &host, TimePoint since)
 {
     const std::lock_guard lock(_mutex);
     return _peers.GroupReaches(host, since);
-}
-
-void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)
-{
-    const std::lock_guard lock(_mutex);
-    if (HasRtpsHeader(datagram))
-    {
-        _own = SenderOf(datagram);
-    }
-    GuidPrefix to{};
-    // The datagram is our own and therefore sound. It has few submessages.
-    VisitSubmessages(datagram,
-                     [&](const ConstSubmessage &part)
-                     {
-                         RtpsReader body = part.Reader();
-                         if (part.Kind == SubmessageKind::DataFrag)
-                         {
-                             _sent.Sent(body);
-                         }
-                         else if (part.Kind == SubmessageKind::InfoDestination)
-                         {
-                             to = PrefixOf(part.Body());
-                         }
-                         else if (part.Kind == SubmessageKind::AckNack)
-                         {
-                             body.Skip(sizeof(EntityId));
-                             const EntityId writer = body.Entity();
-                             if (AbsentNumbers *const absent = _peers.Absent(to, writer))
-                             {
-                                 absent->Acknowledged(body.Sequence());
-                             }
-                         }
-                     });
 }
 
 }  // namespace Rabit::Rtps

@@ -146,7 +146,8 @@ private:
         TimePoint Now{};
         bool Useful = false;
         bool Honest = true;
-        // Announcements completed by their last fragment here, as messages of their own.
+        // Announcements completed by their last fragment here, and ends that got a key hash (KeyedEnd.h), as
+        // messages of their own.
         std::vector<std::vector<std::uint8_t>> Whole;
     };
 

@@ -45,6 +45,39 @@ void WriteSampleNumber(const Submessage &submessage, std::int64_t number)
 
 }  // namespace
 
+void RtpsGuard::Sending(std::span<const std::uint8_t> datagram)
+{
+    const std::lock_guard lock(_mutex);
+    if (HasRtpsHeader(datagram))
+    {
+        _own = SenderOf(datagram);
+    }
+    GuidPrefix to{};
+    // The datagram is our own and therefore sound. It has few submessages.
+    VisitSubmessages(datagram,
+                     [&](const ConstSubmessage &part)
+                     {
+                         RtpsReader body = part.Reader();
+                         if (part.Kind == SubmessageKind::DataFrag)
+                         {
+                             _sent.Sent(body);
+                         }
+                         else if (part.Kind == SubmessageKind::InfoDestination)
+                         {
+                             to = PrefixOf(part.Body());
+                         }
+                         else if (part.Kind == SubmessageKind::AckNack)
+                         {
+                             body.Skip(sizeof(EntityId));
+                             const EntityId writer = body.Entity();
+                             if (AbsentNumbers *const absent = _peers.Absent(to, writer))
+                             {
+                                 absent->Acknowledged(body.Sequence());
+                             }
+                         }
+                     });
+}
+
 bool RtpsGuard::IsItsOwn(const Submessage &submessage, const Delivery &delivery, const Passage &passage)
 {
     const bool announces = delivery.Writer == ParticipantWriter && delivery.Alive;  // it tells addresses

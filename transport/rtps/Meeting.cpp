@@ -84,7 +84,7 @@ bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress
     {
         return false;
     }
-    if (message->From == _self || _goodbyes.Has(message->From, now))
+    if (message->From == _self || !_goodbyes.Heard(message->From, now))
     {
         return true;
     }
@@ -173,7 +173,7 @@ void Meeting::NoteSuccessor(const GuidPrefix &peer)
 
 void Meeting::HeardUnknown(const GuidPrefix &peer, TimePoint now)
 {
-    if (_goodbyes.Has(peer, now))
+    if (!_goodbyes.Heard(peer, now))
     {
         return;
     }

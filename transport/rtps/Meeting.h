@@ -76,7 +76,7 @@ public:
     void HeardUnknown(const GuidPrefix &peer, TimePoint now);
     // A participant announced itself on the network.
     void Announced(const GuidPrefix &peer, bool hasCard, TimePoint now);
-    // A participant said goodbye. It is ignored for a while (RecentGoodbyes.h).
+    // A participant said goodbye. It is ignored until it is known to go on (RecentGoodbyes.h).
     void SaidGoodbye(const GuidPrefix &peer, TimePoint now);
     // An endpoint of the participant has spoken.
     void Spoke(const GuidPrefix &peer);

@@ -196,6 +196,129 @@ TEST_F(RtpsGuardTest, AParticipantThatGoesOnAfterAForgedGoodbyeIsHeardAgain)
     Guard.Now += 1900ms;
     EXPECT_TRUE(Guard.Admit(Goodbye()));
     Guard.Now += 100ms;
+    EXPECT_TRUE(Guard.Admit(Message(Data, DataBody(10), 5)));
+    Guard.Now += Rabit::Rtps::RecentGoodbyes::GoesOn;
+    EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+}
+
+TEST_F(RtpsGuardTest, AnAnnouncementThatWasHeldUpForLongBehindAGoodbyeBringsNobodyBack)
+{
+    EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+    EXPECT_TRUE(Guard.Admit(Goodbye()));
+    Guard.Now += 10s;
+    // All that waited in the queue comes together.
+    for (int i = 0; i < 10; ++i)
+    {
+        Guard.Now += 100ms;
+        EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+        EXPECT_TRUE(Guard.Handed.empty());
+    }
+}
+
+// Cyclone DDS writes what it ends into the payload alone, and Fast DDS reads it in the inline QoS alone.
+class EndByItsPayload : public RtpsGuardTest
+{
+protected:
+    static constexpr std::uint8_t HasInlineQosAndKey = 1 | 2 | 8;
+
+    static Bytes End(EntityId writer, const Bytes &guid, const Bytes &keyHash = {})
+    {
+        const std::uint16_t key = writer == ParticipantWriter ? 0x0050 : 0x005a;
+        return DataBody(
+            2, Join({keyHash, Parameter(0x0071, {0, 0, 0, 3}), {1, 0, 0, 0}, List({Parameter(key, guid)})}),
+            writer);
+    }
+    static Bytes Without(EntityId writer, const Bytes &guid)
+    {
+        return Message(Data, End(writer, guid), HasInlineQosAndKey);
+    }
+    static Bytes With(EntityId writer, const Bytes &guid, const GuidPrefix &to = {})
+    {
+        return Join({Header(), Submessage(InfoDestination, Bytes(to.begin(), to.end())),
+                     Submessage(Data, End(writer, guid, Parameter(0x0070, guid)), HasInlineQosAndKey)});
+    }
+};
+
+TEST_F(EndByItsPayload, OfAParticipantGetsAKeyHash)
+{
+    const Bytes guid = Guid(Sender, ParticipantEntity);
+    EXPECT_TRUE(Guard.Admit(Without(ParticipantWriter, guid)));
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{With(ParticipantWriter, guid)});
+}
+
+TEST_F(EndByItsPayload, OfAnEndpointGetsAKeyHash)
+{
+    const Bytes guid = Guid(Sender, UserWriter);
+    EXPECT_TRUE(Guard.Admit(Without(PublicationsWriter, guid)));
+    EXPECT_EQ(Guard.Handed, std::vector<Bytes>{With(PublicationsWriter, guid)});
+}
+
+TEST_F(EndByItsPayload, InADatagramWithOthersGetsAKeyHashAndKeepsItsDestination)
+{
+    Guard.Sending(Join({Header(Other), Submessage(Data, DataBody(1), 5)}));
+    const Bytes guid = Guid(Sender, UserWriter);
+    const Bytes destination = Submessage(InfoDestination, Bytes(Other.begin(), Other.end()));
+    EXPECT_TRUE(Guard.Admit(
+        Join({Header(), destination, Submessage(Data, End(PublicationsWriter, guid), HasInlineQosAndKey),
+              Submessage(Heartbeat, HeartbeatBody(1, 2, 1, PublicationsWriter))})));
+    ASSERT_EQ(Guard.Handed.size(), 2u);
+    EXPECT_EQ(Guard.Handed[0], With(PublicationsWriter, guid, Other));
+}
+
+TEST_F(EndByItsPayload, BigEndianGetsAKeyHash)
+{
+    const Bytes guid = Guid(Sender, ParticipantEntity);
+    const auto whole = [&](std::uint8_t size, const Bytes &keyHash)
+    {
+        return Join({{Data, 2 | 8, 0, size, 0, 0, 0, 16},
+                     Ids(0, ParticipantWriter),
+                     {0, 0, 0, 0, 0, 0, 0, 2},
+                     keyHash,
+                     {0, 0x71, 0, 4, 0, 0, 0, 3, 0, 1, 0, 0},
+                     {0, 2, 0, 0, 0, 0x50, 0, 16},
+                     guid,
+                     {0, 1, 0, 0}});
+    };
+    EXPECT_TRUE(Guard.Admit(Join({Header(), whole(60, {})})));
+    const Bytes to = Submessage(InfoDestination, Bytes(GuidPrefix{}.size()));
+    EXPECT_EQ(Guard.Handed,
+              std::vector<Bytes>{Join({Header(), to, whole(80, Join({{0, 0x70, 0, 16}, guid}))})});
+}
+
+TEST_F(EndByItsPayload, OfAnotherOneIsStopped)
+{
+    EXPECT_TRUE(Guard.Stops(Without(ParticipantWriter, Guid(Other, ParticipantEntity))));
+    EXPECT_TRUE(Guard.Stops(Without(PublicationsWriter, Guid(Other, UserWriter))));
+}
+
+// As an end with a key hash (ElsewhereTest).
+TEST_F(EndByItsPayload, FromElsewhereIsBelievedTheThirdTime)
+{
+    Guard.From = {10, 0, 0, 9};
+    const Bytes end = Without(ParticipantWriter, Guid(Sender, ParticipantEntity));
+    EXPECT_TRUE(Guard.Stops(end));
+    EXPECT_TRUE(Guard.Stops(end));
+    EXPECT_TRUE(Guard.Admit(end));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+}
+
+TEST_F(EndByItsPayload, IsUnchangedForCycloneDds)
+{
+    Gate guard(RtpsGuard::Mode::Full, RtpsGuard::Vendor::CycloneDds);
+    EXPECT_TRUE(guard.Passes(ParticipantMessage()));
+    EXPECT_TRUE(guard.Passes(Without(ParticipantWriter, Guid(Sender, ParticipantEntity))));
+}
+
+// A program that only listens says nothing else.
+TEST_F(RtpsGuardTest, TwoAnnouncementsSomeTimeApartShowThatAGoodbyeWasForged)
+{
+    EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+    EXPECT_TRUE(Guard.Admit(Goodbye()));
+    Guard.Now += 10s;
+    EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
+    EXPECT_TRUE(Guard.Handed.empty());
+    Guard.Now += 10s;
     EXPECT_TRUE(Guard.Admit(ParticipantMessage()));
     EXPECT_EQ(Guard.Handed.size(), 1u);
 }
@@ -288,8 +411,10 @@ TEST_F(RtpsGuardTest, ADisposalOfAnotherOnesThingsByTheKeyInThePayloadIsStopped)
     EXPECT_TRUE(Guard.Stops(goodbye(participant(Other), ParticipantWriter)));
     EXPECT_TRUE(Guard.Stops(goodbye(endpoint(Other), PublicationsWriter)));
     EXPECT_TRUE(Guard.Stops(goodbye(List({}), ParticipantWriter)));
-    EXPECT_TRUE(Guard.Passes(goodbye(endpoint(Sender), PublicationsWriter)));
-    EXPECT_TRUE(Guard.Passes(goodbye(participant(Sender), ParticipantWriter)));
+    EXPECT_TRUE(Guard.Admit(goodbye(endpoint(Sender), PublicationsWriter)));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
+    EXPECT_TRUE(Guard.Admit(goodbye(participant(Sender), ParticipantWriter)));
+    EXPECT_EQ(Guard.Handed.size(), 1u);
 }
 
 // The vendor reads a whole key of 16 bytes behind the encapsulation, present or not.

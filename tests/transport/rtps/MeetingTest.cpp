@@ -291,9 +291,10 @@ TEST_F(MeetingOfTwo, AnEndpointThatComesLaterIsKnownSoon)
 TEST_F(MeetingOfTwo, ANodeThatGoesOnAfterItsGoodbyeIsMetAgain)
 {
     Channel.Run(20s);
+    Channel.Beats = true;
     Two.Meet->SaidGoodbye(One.Self, Channel.Now);
     One.Dds->Announce();
-    Channel.Run(1900ms);
+    Channel.Run(RecentGoodbyes::Overtaken + RecentGoodbyes::GoesOn);
     EXPECT_FALSE(Two.Meet->IsReplayed(One.Self));
     EXPECT_TRUE(Channel.Until([&] { return Two.Meet->IsReplayed(One.Self); }, 1s));
 }
@@ -558,6 +559,25 @@ TEST(Meeting, ACardThatCameFromElsewhereIsNotBelievedBeforeItCameOften)
     EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
     EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
     EXPECT_TRUE(meeting.Received(summary, elsewhere, false, now));
+}
+
+TEST(Meeting, ACardThatWasHeldUpForLongBehindAGoodbyeBringsNobodyBack)
+{
+    Meeting meeting({.Period = 10s, .Memory = 4h});
+    TimePoint now{1h};
+    const Bytes card = CardMessageOf(Name(7), {1, 2});
+    EXPECT_TRUE(meeting.Received(card, Host, false, now));
+    EXPECT_TRUE(meeting.IsReplayed(Name(7)));
+    meeting.SaidGoodbye(Name(7), now);
+    now += 10s;
+    // All that waited in the queue comes together.
+    for (int i = 0; i < 10; ++i)
+    {
+        now += 100ms;
+        EXPECT_TRUE(meeting.Received(card, Host, false, now));
+        meeting.HeardUnknown(Name(7), now);
+        EXPECT_FALSE(meeting.IsReplayed(Name(7)));
+    }
 }
 
 TEST(Meeting, ACardFromAnotherAddressThatItsSenderHasNamedIsBelieved)

@@ -72,7 +72,7 @@ void VendorDomain::Ask(const Rtps::GuidPrefix &participant)
 void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
 {
     // First of all, so that no announcement comes in between.
-    _goodbyes->Note(participant, std::chrono::steady_clock::now());
+    _goodbyes->Ignore(participant, std::chrono::steady_clock::now());
     std::vector<std::uint8_t> goodbye;
     {
         const std::lock_guard lock(_cardMutex);

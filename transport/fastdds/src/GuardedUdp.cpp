@@ -252,7 +252,7 @@ private:
     {
         const std::vector<std::uint8_t> own = _input.OwnAnnouncement();
         // First of all, so that no announcement comes in between.
-        _descriptor.Chosen().Goodbyes->Note(peer, std::chrono::steady_clock::now());
+        _descriptor.Chosen().Goodbyes->Ignore(peer, std::chrono::steady_clock::now());
         const auto ours = GoodbyeAfter(own, peer);
         SendCard(peer, ours);
         SendCard(std::nullopt, ours);
