@@ -58,14 +58,28 @@ TEST_F(VendorInputTest, AForgottenParticipantIsAnnouncedBeforeItsGoodbye)
     EXPECT_EQ(Discovery.Datagrams, (std::vector{Announcement, Announcement, Goodbye}));
 }
 
-TEST_F(VendorInputTest, AnAnnouncementIsKeptUntilThereIsAReceiverOfDiscovery)
+TEST_F(VendorInputTest, AGoodbyeWaitsForAReceiverOfDiscovery)
 {
     KeepingReceiver unknown;
+    KeepingReceiver samples;
     Input.Deliver(At(DiscoveryPort, unknown), Announcement);
     Input.Forget(Sender, Goodbye);
+    Input.NoteReceiver(At(DiscoveryPort + 1, samples));
+    EXPECT_TRUE(samples.Datagrams.empty());
     Input.NoteReceiver(At(GroupPort, Discovery));
-    Input.Forget(Sender, Goodbye);
     EXPECT_EQ(Discovery.Datagrams, (std::vector{Announcement, Goodbye}));
+    Input.NoteReceiver(At(GroupPort, Discovery));
+    EXPECT_EQ(Discovery.Datagrams.size(), 2u);
+}
+
+TEST_F(VendorInputTest, AGoodbyeWaitsUntilItIsKnownWhichPortIsForDiscovery)
+{
+    Input.NoteReceiver(At(DiscoveryPort, Discovery));
+    Input.Forget(Sender, Goodbye);
+    EXPECT_TRUE(Discovery.Datagrams.empty());
+    Input.NoteOwn(ParticipantMessage(Other, DiscoveryPort));
+    Input.NoteReceiver(At(DiscoveryPort, Discovery));
+    EXPECT_EQ(Discovery.Datagrams, std::vector<Bytes>{Goodbye});
 }
 
 TEST_F(VendorInputTest, ThePortsThatTheOwnParticipantAnnouncesAreForDiscovery)

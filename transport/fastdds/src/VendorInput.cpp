@@ -33,8 +33,21 @@ GuidPrefix VendorInput::OwnPrefix() const
 
 void VendorInput::NoteReceiver(const Receiver &receiver)
 {
-    const std::lock_guard lock(_mutex);
-    _receivers.insert_or_assign(receiver.Local.port, receiver);
+    Receiver discovery;
+    std::map<GuidPrefix, std::vector<std::uint8_t>> goodbyes;
+    {
+        const std::lock_guard lock(_mutex);
+        _receivers.insert_or_assign(receiver.Local.port, receiver);
+        discovery = _waiting.empty() ? Receiver{} : FindDiscoveryReceiver();
+        if (discovery.Next != nullptr)
+        {
+            goodbyes.swap(_waiting);
+        }
+    }
+    for (auto &[peer, goodbye] : goodbyes)
+    {
+        HandOnGoodbye(discovery, peer, goodbye);
+    }
 }
 
 void VendorInput::NoteCardPort(std::uint32_t port)
@@ -46,6 +59,11 @@ void VendorInput::NoteCardPort(std::uint32_t port)
 Receiver VendorInput::DiscoveryReceiver() const
 {
     const std::lock_guard lock(_mutex);
+    return FindDiscoveryReceiver();
+}
+
+Receiver VendorInput::FindDiscoveryReceiver() const
+{
     auto ports = _discoveryPorts;
     // The vendor does not announce the group that it listens to where samples do not go by multicast.
     ports.push_back(_groupPort);
@@ -121,7 +139,26 @@ void VendorInput::Introduce(std::span<const std::uint8_t> datagram)
 
 void VendorInput::Forget(const GuidPrefix &peer, std::span<std::uint8_t> goodbye)
 {
-    const Receiver receiver = DiscoveryReceiver();
+    Receiver receiver;
+    {
+        const std::lock_guard lock(_mutex);
+        receiver = FindDiscoveryReceiver();
+        if (receiver.Next == nullptr)
+        {
+            if (_waiting.size() >= Introductions::MostPeers)
+            {
+                _waiting.erase(_waiting.begin());
+            }
+            _waiting.insert_or_assign(peer, std::vector(goodbye.begin(), goodbye.end()));
+            return;
+        }
+    }
+    HandOnGoodbye(receiver, peer, goodbye);
+}
+
+void VendorInput::HandOnGoodbye(const Receiver &receiver, const GuidPrefix &peer,
+                                std::span<std::uint8_t> goodbye)
+{
     // A vendor that waits for protected announcements heeds a goodbye only of participants of which it has
     // had one. Otherwise it would remember a failed handshake for good.
     HandOnAnnouncement(receiver, peer);

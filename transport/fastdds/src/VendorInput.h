@@ -44,7 +44,9 @@ public:
     // The sender of OwnAnnouncement; GuidPrefix{}: there is none yet.
     Rtps::GuidPrefix OwnPrefix() const;
 
-    // Notes a receiver that was given a datagram. Called on its receiving thread.
+    // Notes a receiver that was given a datagram, before the vendor sees the datagram. Hands over the
+    // goodbyes that waited for a receiver of discovery. Called on its receiving thread, without the vendor's
+    // locks.
     void NoteReceiver(const Receiver &receiver);
     // Notes the port of a sound card message.
     void NoteCardPort(std::uint32_t port);
@@ -61,12 +63,18 @@ public:
     // Hands the announcement of a datagram's sender to the vendor once more, if the sender is authenticated.
     // The vendor has seen the datagram.
     void Introduce(std::span<const std::uint8_t> datagram);
-    // Hands over the goodbye of a participant in its name. Called on a thread without locks.
+    // Hands over the goodbye of a participant in its name. If there is no receiver of discovery yet, the
+    // goodbye waits for one (NoteReceiver). Called on a thread without locks.
     void Forget(const Rtps::GuidPrefix &peer, std::span<std::uint8_t> goodbye);
 
 private:
     void HandOnAsProtected(const Receiver &receiver, const Rtps::GuidPrefix &peer,
                            std::span<std::uint8_t> message);
+    // As Forget, if there is a receiver.
+    void HandOnGoodbye(const Receiver &receiver, const Rtps::GuidPrefix &peer,
+                       std::span<std::uint8_t> goodbye);
+    // DiscoveryReceiver. Requires _mutex.
+    Receiver FindDiscoveryReceiver() const;
     // Hands over the last announcement of a participant, once, if there is a receiver.
     void HandOnAnnouncement(const Receiver &receiver, const Rtps::GuidPrefix &peer);
 
@@ -76,9 +84,11 @@ private:
     std::mutex _protecting;
     mutable std::mutex _mutex;                     // guards the members below
     std::map<std::uint32_t, Receiver> _receivers;  // by port
-    std::uint32_t _cardPort = 0;                   // of the last sound card message
-    std::vector<std::uint8_t> _announcement;       // our last one
-    std::vector<std::uint32_t> _discoveryPorts;    // that it names
+    // Goodbyes without a receiver of discovery, one for each participant.
+    std::map<Rtps::GuidPrefix, std::vector<std::uint8_t>> _waiting;
+    std::uint32_t _cardPort = 0;                 // of the last sound card message
+    std::vector<std::uint8_t> _announcement;     // our last one
+    std::vector<std::uint32_t> _discoveryPorts;  // that it names
 };
 
 }  // namespace Rabit::FastDds
