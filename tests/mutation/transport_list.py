@@ -330,6 +330,7 @@ MUTATIONS = [
     Mutation("all keys are one", FASTDDS + "KeepLastHistory.cpp",
              "const rtps::InstanceHandle_t instance = change.instanceHandle;",
              "const rtps::InstanceHandle_t instance;", f"{CONFORMANCE}:*ALateReaderGetsTheLastOfEachKey*"),
+    history("the vendor's own writers go with their samples", "Vendor.cpp", "RemoveSamples(*writer);", ""),
     history("a writer goes with its samples in the history", "KeepLastHistory.cpp",
             "while (!m_changes.empty())", "while (false)"),
     history("an instance ends later than it did", "KeepLast.h", "number <= found->second.End",

@@ -127,6 +127,7 @@ SessionCore::~SessionCore()
         _keys->Stop();
     }
     _announceTimer.Stop();
+    RemoveOwnSamples(*_participant);
     rtps::RTPSDomain::removeRTPSParticipant(_participant);
 }
 

@@ -176,6 +176,27 @@ void ReadInterfaces() {}  // each participant does
 
 #endif
 
+void RemoveOwnSamples(const rtps::RTPSParticipant &participant)
+{
+    // OMG DDSI-RTPS 2.3, 9.3.1.3, and OMG DDS Security 1.1, 7.4.5. The other builtin writers repeat no
+    // heartbeats.
+    constexpr Rtps::EntityId reliable[] = {Rtps::PublicationsWriter,
+                                           Rtps::SubscriptionsWriter,
+                                           Rtps::LivelinessWriter,
+                                           0xff0003c2,   // SEDPbuiltinPublicationsSecureWriter
+                                           0xff0004c2,   // SEDPbuiltinSubscriptionsSecureWriter
+                                           0xff0101c2,   // SPDPbuiltinParticipantsSecureWriter
+                                           0xff0200c2,   // BuiltinParticipantMessageSecureWriter
+                                           0xff0202c3};  // BuiltinParticipantVolatileMessageSecureWriter
+    for (const Rtps::EntityId entity : reliable)
+    {
+        if (rtps::RTPSWriter *const writer = FindWriter({participant.getGuid().guidPrefix, entity}))
+        {
+            RemoveSamples(*writer);
+        }
+    }
+}
+
 rtps::RTPSWriter *FindWriter(const rtps::GUID_t &guid)
 {
     // In version 3 a BaseWriter, which begins with its RTPSWriter.

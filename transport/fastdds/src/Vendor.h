@@ -217,6 +217,12 @@ void ReadInterfaces();
 // A writer of a participant of this process, builtin ones included; nullptr if there is none.
 rtps::RTPSWriter *FindWriter(const rtps::GUID_t &guid);
 
+// Removes all samples of the vendor's own reliable writers of a participant: of discovery and, with keys, of
+// the exchange of keys. Call it before the participant is removed, when it has no other endpoints. Version
+// 2.9 frees the samples while they are in the history, and the writer's timer of heartbeats runs on
+// (KeepLastHistory::RemoveWriter). Call it without the vendor's locks.
+void RemoveOwnSamples(const rtps::RTPSParticipant &participant);
+
 // Calls `deliver`, which hands an announcement or a goodbye of `peer` to the participant `own` of this
 // process. The vendor takes it for a protected one (AwaitsProtectedAnnouncements). Call it without the
 // vendor's locks, and for one participant of this process on one thread at a time.

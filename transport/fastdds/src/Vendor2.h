@@ -209,6 +209,12 @@ inline void Update(rtps::RTPSWriter &writer, const rtps::WriterAttributes &attri
     writer.updateAttributes(attributes);
 }
 
+// Removes all samples of a writer, also of one whose history the vendor has.
+inline void RemoveSamples(rtps::RTPSWriter &writer)
+{
+    writer.remove_older_changes();
+}
+
 inline rtps::RTPSWriter *MakeWriter(rtps::RTPSParticipant &participant, rtps::WriterAttributes &attributes,
                                     const std::shared_ptr<rtps::IPayloadPool> &pool,
                                     rtps::WriterHistory &history, rtps::WriterListener &listener)
