@@ -7,6 +7,7 @@
 #include <boost/algorithm/string/case_conv.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -21,6 +22,11 @@ std::string WithNumber(const std::string &mode, std::uint32_t id, const CommandT
     return index < tally.commands ? mode + " " + std::to_string(index + 1) : mode;
 }
 
+double MonotonicS(const Rabit::RabitWorkspace &workspace)
+{
+    return std::chrono::duration<double>(workspace.GetClock().Monotonic()).count();
+}
+
 std::string MissionText(const Uav::MissionState &mission, const CommandTally &tally)
 {
     const bool isCommanded =
@@ -30,7 +36,8 @@ std::string MissionText(const Uav::MissionState &mission, const CommandTally &ta
 }
 }  // namespace
 
-AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace) : _node(std::move(node))
+AircraftMonitor::AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace)
+    : _node(std::move(node)), _workspace(workspace)
 {
     workspace.AddPublishSubscribeMessage(_node + "/Pose", _pose);
     workspace.AddPublishSubscribeMessage(_node + "/MissionState", _mission);
@@ -65,11 +72,13 @@ void AircraftMonitor::Show(FleetRow &row, const CommandTally &tally)
 {
     if (!_pose->GetGlobalPublishSubscribeMessageRef() || !_mission->GetGlobalPublishSubscribeMessageRef())
         return;
-    _pose->FetchMessage();
+    if (_pose->FetchMessage() && _pose->WasPosted())
+        _badPosition = _check.Look(*_pose, MonotonicS(_workspace) - _pose->GetAgeSeconds());
     _mission->FetchMessage();
     if (_pose->WasPosted())
     {
         row.AgeS = _pose->GetAgeSeconds();
+        row.BadPosition = _badPosition;
         row.LatitudeDeg = _pose->latitude_deg;
         row.LongitudeDeg = _pose->longitude_deg;
         row.AltitudeM = _pose->altitude_m;

@@ -3,6 +3,7 @@
 #include "FleetTable.h"
 #include "FleetTargets.h"
 #include "PoseCount.h"
+#include "PositionCheck.h"
 #include "ground.idl.h"
 #include "uav.idl.h"
 
@@ -27,8 +28,9 @@ public:
     // Registers these names in the workspace, which must outlive this object.
     AircraftMonitor(std::string node, Rabit::RabitWorkspace &workspace);
 
-    // Fills in the row's pose, its age, the battery, the mission and the reason if the search area is
-    // declined. The tally gives the numbers by which people know the commands. Only for the manager's thread.
+    // Fills in the row's pose, its age, why its position is bad, the battery, the mission and the reason if
+    // the search area is declined. The tally gives the numbers by which people know the commands. Only for
+    // the manager's thread.
     void Show(FleetRow &row, const CommandTally &tally = {});
     // The last targets and findings of the aircraft; valid until the next call. Only for the same thread.
     SaidOfTargets Targets();
@@ -46,6 +48,9 @@ private:
     };
 
     const std::string _node;
+    Rabit::RabitWorkspace &_workspace;
+    PositionCheck _check;
+    std::string _badPosition;  // of the last pose
     std::shared_ptr<Arrivals> _arrivals = std::make_shared<Arrivals>();
     Rabit::RabitScopedConnection _onPose;
     Rabit::RabitScopedConnection _onMission;

@@ -72,6 +72,8 @@ std::vector<std::string> AttentionLines(const std::vector<FleetRow> &rows, const
         };
         if (!silent)
             add(WhatIsMissing(row));
+        if (!row.BadPosition.empty())
+            add("bad position: " + Printable(row.BadPosition, LongestReason));
         if (row.IsBatteryBelow(FleetRow::BatteryWarning))
             add("the battery is at " + std::to_string(static_cast<int>(*row.BatteryPercent)) + " %");
         if (!row.AreaDeclined.empty())

@@ -1,12 +1,14 @@
 #include "Commander.h"
 
 #include "PlanGoto.h"
+#include "PositionCheck.h"
 
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/GatewayManager.h>
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace Ground
 {
@@ -19,6 +21,7 @@ Commander::Commander(Settings settings, Rabit::RabitWorkspace &workspace)
     AddPublishSubscribeMessage("SearchArea", _area);
     AddPublishSubscribeMessage("CommandTally", _tally);
     AddPublishSubscribeMessage("CommandList", _list);
+    AddPublishSubscribeMessage("AreaList", _areas);
     SetPeriodSec(std::chrono::duration<double>(WorkPeriod).count());
     SetWakeupBetweenTurns(true);  // answers and outcomes are handled at once
 }
@@ -37,6 +40,7 @@ void Commander::ExecuteUnitOfWork()
     FollowReceipts();
     TakeMessages();
     LookAtAreas(elapsed);
+    FollowAreas();
     if (IsTurn() && !IsQuiet(elapsed))
         CommandBySettings(elapsed);
     PostIfChanged();
@@ -86,6 +90,7 @@ void Commander::Take(Uav::SearchArea area)
     area.number = std::max(_area->number, _highestArea) + 1;
     _area->CopyMessage(&area);
     _area->PostMessage();
+    _areaLog.Given(area, _elapsedS);
 }
 
 void Commander::LookAtAreas(std::chrono::nanoseconds elapsed)
@@ -115,6 +120,24 @@ void Commander::LookAtAreas(std::chrono::nanoseconds elapsed)
         Take(Uav::SearchArea(*_area));  // one that was away has an area of an earlier run
 }
 
+// Replays are no aircraft, and report an area of the past.
+void Commander::FollowAreas()
+{
+    std::vector<AreaReport> reports;
+    for (auto &[node, aircraft] : _aircraft)
+    {
+        if (aircraft.IsReplay || !aircraft.State->GetGlobalPublishSubscribeMessageRef())
+            continue;
+        aircraft.State->FetchMessage();
+        if (!aircraft.State->WasPosted())
+            continue;
+        const bool isLost = StateOf(*_fleet, 0, node) == RowState::Lost;
+        reports.push_back({node, isLost, aircraft.State->search_area, aircraft.State->area_declined,
+                           _elapsedS - aircraft.State->GetAgeSeconds()});
+    }
+    _areaLog.Look(reports);
+}
+
 bool Commander::MayLackArea(const Aircraft &aircraft, std::chrono::nanoseconds elapsed) const
 {
     return _settings.Area && elapsed < *aircraft.First + ReportPatience &&
@@ -133,13 +156,13 @@ void Commander::CommandBySettings(std::chrono::nanoseconds elapsed)
 void Commander::CommandBySettings(const Rabit::Gateway::NodeStatus &status, std::chrono::nanoseconds elapsed)
 {
     Aircraft &aircraft = AircraftOf(status.node);
+    aircraft.IsReplay = status.replay;
     if (!aircraft.Pose->GetGlobalPublishSubscribeMessageRef())
         return;  // the name belongs to a message of another type, which the workspace has logged
     aircraft.Pose->FetchMessage();
     if (!(aircraft.Pose->GetAgeSeconds() <= PoseFreshS))
         return;  // no aircraft, or it is not UP with a fresh pose
     LookForNewLife(status.node, status.incarnation);
-    aircraft.IsReplay = status.replay;
     if (!aircraft.First)
         aircraft.First = aircraft.NextGoto = elapsed + FirstAfter();
     if (elapsed < *aircraft.First)
@@ -178,6 +201,8 @@ void Commander::LookForNewLife(const std::string &node, std::uint64_t life)
 
 bool Commander::SendGoto(const std::string &node, const Uav::Pose &pose)
 {
+    if (!WhyImpossible(pose).empty())
+        return false;  // there is no place near it
     const Uav::Goto plan = PlanGoto(pose, _log.NextId());
     CommandStatus command;
     command.node = node;
@@ -280,9 +305,19 @@ void Commander::PostTallyIfChanged()
     _tally->PostMessage();
 }
 
+void Commander::PostAreasIfChanged()
+{
+    if (_areaLog.Areas() == _areas->items)
+        return;
+    _areas->posted_s = _elapsedS;
+    _areas->items = _areaLog.Areas();
+    _areas->PostMessage();
+}
+
 void Commander::PostIfChanged()
 {
     PostTallyIfChanged();
+    PostAreasIfChanged();
 
     const std::vector<CommandStatus> &all = _log.Commands();
     const std::size_t listed = std::min(all.size(), MaxListed);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include "AreaLog.h"
 #include "CommandLog.h"
+#include "NodeState.h"
 #include "ground.idl.h"
 #include "uav.idl.h"
 
@@ -28,7 +30,8 @@ namespace Ground
 //          and those that its settings demand.
 // Posts:   Geofence (Uav::Geofence), at the start; SearchArea (Uav::SearchArea), when a person wants one, and
 //          the first one of its settings once all that are there have reported that they have none;
-//          CommandList (Ground::CommandList) and CommandTally (Ground::CommandTally), when they change.
+//          CommandList (Ground::CommandList), CommandTally (Ground::CommandTally) and AreaList
+//          (Ground::AreaList), when they change.
 // Fetches: Gateway/Fleet, and <node>/Pose and <node>/MissionState of each node.
 //
 // An area commands the whole fleet, so a restart must not bring an old one back. Aircraft keep the area with
@@ -110,6 +113,7 @@ private:
     void Obey(const Order &order);
     void Take(Uav::SearchArea area);
     void LookAtAreas(std::chrono::nanoseconds elapsed);
+    void FollowAreas();
     // True if the first area has not reached that aircraft yet, which would decline to search.
     bool MayLackArea(const Aircraft &aircraft, std::chrono::nanoseconds elapsed) const;
     void CommandBySettings(std::chrono::nanoseconds elapsed);
@@ -122,6 +126,7 @@ private:
     bool SendGoto(const std::string &node, const Uav::Pose &pose);
     void PostIfChanged();
     void PostTallyIfChanged();
+    void PostAreasIfChanged();
     void EndIfDone(std::chrono::nanoseconds elapsed);
     bool IsQuiet(std::chrono::nanoseconds elapsed) const;
     std::chrono::nanoseconds FirstAfter() const;
@@ -132,8 +137,9 @@ private:
     std::atomic<bool> _endRequested{false};
     std::optional<std::chrono::nanoseconds> _waitingSince;  // for outstanding answers
     CommandLog _log;
+    AreaLog _areaLog;
     std::map<std::uint32_t, std::shared_ptr<Rabit::RabitQueueReceipt>> _onWay;  // by the command's number
-    std::map<std::string, Aircraft> _aircraft;
+    std::map<std::string, Aircraft, NaturalOrder> _aircraft;
     std::set<std::string> _ordered;  // those that a person has commanded
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
@@ -143,6 +149,7 @@ private:
     std::uint32_t _highestArea = 0;           // of the numbers that aircraft report
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
     std::shared_ptr<CommandList> _list = std::make_shared<CommandList>();
+    std::shared_ptr<AreaList> _areas = std::make_shared<AreaList>();
 };
 
 }  // namespace Ground

@@ -38,9 +38,9 @@ int Urgency(const FleetRow &row)
         case RowState::Up:
             break;
     }
-    return row.IsBatteryBelow(FleetRow::BatteryAlarm)     ? 2
-           : row.IsBatteryBelow(FleetRow::BatteryWarning) ? 3
-                                                          : 5;
+    return row.IsBatteryBelow(FleetRow::BatteryAlarm)                                 ? 2
+           : row.IsBatteryBelow(FleetRow::BatteryWarning) || !row.BadPosition.empty() ? 3
+                                                                                      : 5;
 }
 
 // The most urgent first, so that a small screen cuts off aircraft without problems.
@@ -62,8 +62,9 @@ Emphasis EmphasisOf(const FleetRow &row)
 {
     if (row.State == RowState::Lost || row.IsBatteryBelow(FleetRow::BatteryAlarm))
         return Emphasis::Alarm;
-    return row.IsFresh() && !row.IsBatteryBelow(FleetRow::BatteryWarning) ? Emphasis::None
-                                                                          : Emphasis::Warning;
+    return row.IsFresh() && row.BadPosition.empty() && !row.IsBatteryBelow(FleetRow::BatteryWarning)
+               ? Emphasis::None
+               : Emphasis::Warning;
 }
 
 std::string TableHeading(std::size_t nodeWidth)
@@ -78,7 +79,9 @@ std::string TableRow(const FleetRow &row, std::size_t nodeWidth)
     const bool old = row.AgeS && !row.IsFresh();
     std::string line = Left(Printable(row.Node, nodeWidth), nodeWidth) + " " + Left(ToText(row.State), 7) +
                        (old ? "!" : " ") + Right(AgeText(row), 5) + (old ? " (" : "  ");
-    if (row.AgeS)
+    if (row.AgeS && !row.BadPosition.empty())
+        line += Right("bad position", 20) + " " + Right("-", 6) + " " + Right("-", 5);
+    else if (row.AgeS)
         line += Right(Format("%.5f", row.LatitudeDeg), 9) + " " +
                 Right(Format("%.5f", row.LongitudeDeg), 10) + " " + Right(Format("%.1f", row.AltitudeM), 6) +
                 " " + Right(Format("%.1f", row.SpeedMps), 5);
@@ -97,9 +100,11 @@ std::string LogLine(const FleetRow &row, double elapsedS)
     if (row.AgeS)
     {
         const bool old = !row.IsFresh();
-        line += (old ? " OLD pose (age " : " pose (age ") + AgeText(row) + " s) " +
-                Format("%.7f", row.LatitudeDeg) + " " + Format("%.7f", row.LongitudeDeg) + " " +
-                Format("%.1f m", row.AltitudeM) + " " + Format("%.1f m/s", row.SpeedMps);
+        line += (old ? " OLD pose (age " : " pose (age ") + AgeText(row) + " s) ";
+        line += row.BadPosition.empty()
+                    ? Format("%.7f", row.LatitudeDeg) + " " + Format("%.7f", row.LongitudeDeg) + " " +
+                          Format("%.1f m", row.AltitudeM) + " " + Format("%.1f m/s", row.SpeedMps)
+                    : "bad position";
     }
     else
     {

@@ -32,8 +32,9 @@ struct FleetRow
     double LongitudeDeg = 0;
     double AltitudeM = 0;
     double SpeedMps = 0;
-    std::string Mission;                   // empty: not known
-    std::string AreaDeclined;              // reason why it declines the search area; empty if it does not
+    std::string Mission;       // empty: not known
+    std::string BadPosition;   // why the position of the last pose is not believed; empty if it is
+    std::string AreaDeclined;  // reason why it declines the search area; empty if it does not
     std::optional<double> BatteryPercent;  // 0 to 100; none: not known now
     std::uint64_t Sent = 0;
     std::uint64_t Acknowledged = 0;
@@ -69,9 +70,10 @@ struct TableLine
 };
 
 // The table with a title and a heading, for a screen of `columns` columns: LOST aircraft first, then STALE,
-// UP with a low battery, WAITING and UP, otherwise in the order of the rows. Old values are in parentheses,
-// and their age has an exclamation mark before it, so that they stand out without colours too. Round trip and
-// delivery rate have columns of their own, or are below the table if there is no room for them.
+// UP with a low battery or a bad position, WAITING and UP, otherwise in the order of the rows. Old values are
+// in parentheses, and their age has an exclamation mark before it, so that they stand out without colours
+// too. Round trip and delivery rate have columns of their own, or are below the table if there is no room for
+// them.
 std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double elapsedS,
                                        std::size_t columns = 80);
 

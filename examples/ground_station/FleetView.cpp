@@ -1,5 +1,6 @@
 #include "FleetView.h"
 
+#include "AreaLines.h"
 #include "AttentionLines.h"
 #include "ProblemLines.h"
 #include "RadioLines.h"
@@ -35,6 +36,7 @@ FleetView::FleetView(const Settings &settings, Output output, Rabit::RabitWorksp
     AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
     AddPublishSubscribeMessage("CommandTally", _tally);
     AddPublishSubscribeMessage("CommandList", _commands);
+    AddPublishSubscribeMessage("AreaList", _areas);
     for (const std::string &node : settings.Expected)
         _aircraft[node] = {std::make_unique<AircraftMonitor>(node, workspace), true};
     SetWakeupTimeDelayMSec(static_cast<int>((_output.IsTerminal ? ScreenPeriod : LogPeriod).count()));
@@ -56,6 +58,7 @@ void FleetView::Look()
     _fleet->FetchMessage();
     _tally->FetchMessage();
     _commands->FetchMessage();
+    _areas->FetchMessage();
     if (_fleet->WasPosted())
         _radio.Look(*_fleet, _fleet->GetPostTime().Monotonic);
     FollowNewNodes();
@@ -120,6 +123,8 @@ void FleetView::PrintTable(const std::vector<FleetRow> &rows, double elapsedS)
     std::vector<TableLine> lines = FleetTableLines(rows, elapsedS, size.Columns);
     if (std::string replay = ReplayLine(*_fleet); !replay.empty())
         lines.insert(lines.begin(), {std::move(replay), Emphasis::Warning});
+    for (TableLine &line : AreaTableLines(*_areas))
+        lines.push_back(std::move(line));
     for (const std::string &line : Attention(rows))
         lines.push_back({line, Emphasis::Warning});
     for (TableLine &line : RadioTableLines(_radio.Use(), _fleet->GetAgeSeconds(), size.Columns))
@@ -141,6 +146,8 @@ void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
         _output.Stream << "         " << replay << '\n';
     for (const std::string &line : FleetLogLines(rows, elapsedS))
         _output.Stream << line << '\n';
+    if (const std::string line = NewAreaLine(); !line.empty())
+        _output.Stream << "         " << line << '\n';
     for (const std::string &line : NewAttention(rows))
         _output.Stream << "         " << line << '\n';
     for (const std::string &line : TargetLinesThatChanged())
@@ -156,6 +163,14 @@ void FleetView::PrintLog(const std::vector<FleetRow> &rows, double elapsedS)
 std::vector<std::string> FleetView::Attention(const std::vector<FleetRow> &rows) const
 {
     return AttentionLines(rows, *_commands, *_tally, _fleet->WasPosted() ? _fleet->GetAgeSeconds() : 0);
+}
+
+// The line about the wanted search area if it has changed, otherwise empty.
+std::string FleetView::NewAreaLine()
+{
+    const std::vector<TableLine> lines = AreaTableLines(*_areas);
+    const std::string now = lines.empty() ? "" : lines.front().Text;
+    return std::exchange(_shownArea, now) == now ? "" : now;
 }
 
 // The attention lines that the previous log line did not have.

@@ -30,7 +30,7 @@ namespace Ground
 // aircraft, the state of the radio, and current problems of the data flow.
 //
 // Fetches: Gateway/Fleet, from which it learns the nodes; <node>/Pose, <node>/MissionState, <node>/Findings
-// and <node>.vision/Targets of each of them; and CommandTally and CommandList of the Commander.
+// and <node>.vision/Targets of each of them; and CommandTally, CommandList and AreaList of the Commander.
 //
 // A node counts as an aircraft once a pose or mission state of it has come, or if it is expected.
 class FleetView : public Rabit::RabitManager
@@ -90,6 +90,7 @@ private:
     void PrintLog(const std::vector<FleetRow> &rows, double elapsedS);
     std::vector<std::string> TargetLinesThatChanged();
     std::vector<std::string> Attention(const std::vector<FleetRow> &rows) const;
+    std::string NewAreaLine();
     std::vector<std::string> NewAttention(const std::vector<FleetRow> &rows);
 
     const Output _output;
@@ -98,11 +99,13 @@ private:
     std::vector<Seen> _seen;
     std::map<std::string, Shown> _shownTargets;  // by name
     std::set<std::string> _shownAttention;
+    std::string _shownArea;
     TerminalScreen _screen;
     RadioWatch _radio;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
     std::shared_ptr<CommandList> _commands = std::make_shared<CommandList>();
+    std::shared_ptr<AreaList> _areas = std::make_shared<AreaList>();
 };
 
 }  // namespace Ground

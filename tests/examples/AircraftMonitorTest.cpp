@@ -57,6 +57,21 @@ TEST_F(AircraftMonitor, ShowsTheLatestPoseAndItsAge)
     EXPECT_NEAR(*row.AgeS, 1.5, 1e-9);
 }
 
+TEST_F(AircraftMonitor, TellsWhyAPositionIsBadUntilAGoodOneComes)
+{
+    _pose->latitude_deg = 95;
+    _pose->PostMessage();
+    EXPECT_EQ(Shown().BadPosition, "latitude must be from -90 to 90, not 95");
+    EXPECT_TRUE(Shown().AgeS) << "a pose has come";
+    _pose->latitude_deg = 47;
+    _pose->PostMessage();
+    EXPECT_EQ(Shown().BadPosition, "");
+    _clock->Advance(100ms);
+    _pose->latitude_deg = 48;
+    _pose->PostMessage();
+    EXPECT_EQ(Shown().BadPosition, "it jumped 111 km in 0.1 s");
+}
+
 TEST_F(AircraftMonitor, LetsAnOldPoseGrowOld)
 {
     _pose->PostMessage();

@@ -56,6 +56,12 @@ TEST_F(AttentionLines, TellOfALowBattery)
     EXPECT_THAT(Lines(), ElementsAre("uav2: the battery is at 24 %"));
 }
 
+TEST_F(AttentionLines, TellOfABadPosition)
+{
+    _rows[0].BadPosition = "latitude must be from -90 to 90, not 95";
+    EXPECT_THAT(Lines(), ElementsAre("uav1: bad position: latitude must be from -90 to 90, not 95"));
+}
+
 TEST_F(AttentionLines, TellWhyTheSearchAreaIsDeclined)
 {
     _rows[1].AreaDeclined = "100 m above sea level is below the floor of 460 m";

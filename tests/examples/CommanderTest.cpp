@@ -391,6 +391,12 @@ protected:
         _workspace.ForceFetchMessage("SearchArea", &area);
         return area.WasPosted() ? std::pair(area.number, area.north_m) : std::pair(std::uint32_t{0}, 0.0F);
     }
+    Ground::AreaList Listed()
+    {
+        Ground::AreaList list;
+        _workspace.ForceFetchMessage("AreaList", &list);
+        return list;
+    }
     static Ground::Commander::Settings WithArea()
     {
         Ground::Commander::Settings settings;
@@ -440,6 +446,48 @@ TEST_F(AreaCommander, NumbersAWantedAreaAnewIfAnAircraftComesBackWithAHigherNumb
     EXPECT_EQ(Posted().first, 6U);
     Want(400);
     EXPECT_EQ(Posted(), std::pair(7U, 400.0F));
+}
+
+TEST_F(AreaCommander, ListsAnAreaWithWhatBecomesOfItAtEachAircraft)
+{
+    Start({});
+    Run(200ms);
+    Report(0);
+    Want(321);
+    EXPECT_EQ(Listed().items.at(0).number, 1u);
+    EXPECT_EQ(Listed().items.at(0).north_m, 321);
+    ASSERT_EQ(Listed().items.at(0).answers.size(), 1u);
+    EXPECT_EQ(Listed().items[0].answers[0].progress, Ground::AreaProgress::AREA_SENT);
+    Report(1);
+    EXPECT_EQ(Listed().items[0].answers[0].progress, Ground::AreaProgress::AREA_FLOWN);
+    Want(400);
+    _state->area_declined = "60 m outside of the geofence";
+    Report(1);
+    const Ground::AreaList list = Listed();
+    ASSERT_EQ(list.items.size(), 2u);
+    EXPECT_EQ(list.items[0].answers.at(0).progress, Ground::AreaProgress::AREA_FLOWN);
+    EXPECT_EQ(list.items[1].answers.at(0).progress, Ground::AreaProgress::AREA_DECLINED);
+    EXPECT_EQ(list.items[1].answers.at(0).reason, "60 m outside of the geofence");
+    EXPECT_EQ(list.items[1].answers.at(0).flies, 1u);
+}
+
+TEST_F(AreaCommander, CountsNoReplayAmongTheAircraft)
+{
+    Start({});
+    _fleet->nodes[0].replay = true;
+    _fleet->PostMessage();
+    Run(200ms);
+    Report(4);
+    Want(321);
+    EXPECT_TRUE(Listed().items.at(0).answers.empty());
+}
+
+TEST_F(Commander, SendsNoGotoNearAPositionThatCannotBe)
+{
+    _pose->latitude_deg = 1e300;
+    Start({.Period = 5s});
+    Run(2s);
+    EXPECT_TRUE(_gateway->Sent.empty());
 }
 
 TEST_F(Commander, TellsASearcherToSearchOnce)

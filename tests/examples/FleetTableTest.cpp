@@ -49,6 +49,19 @@ TEST(FleetTable, ShowsAFreshRow)
     EXPECT_EQ(lines[2].Shown, Emphasis::None);
 }
 
+TEST(FleetTable, ShowsNoNumbersOfABadPositionAndPutsTheAircraftFirst)
+{
+    FleetRow bad = Fresh();
+    bad.Node = "uav2";
+    bad.LatitudeDeg = 95;
+    bad.AltitudeM = 1e300;
+    bad.BadPosition = "latitude must be from -90 to 90, not 95";
+    const auto lines = FleetTableLines({Fresh(), bad}, 0);
+    EXPECT_EQ(lines[2].Text,
+              "uav2     UP       0.05          bad position      -     - GOTO 3         3     2");
+    EXPECT_EQ(lines[2].Shown, Emphasis::Warning);
+}
+
 TEST(FleetTable, MarksALostRowAndPutsItsOldValuesInParentheses)
 {
     const auto lines = FleetTableLines({WithState(RowState::Lost, 6.31)}, 0);

@@ -88,6 +88,35 @@ TEST_F(FleetView, TellsOnceWhatAnAircraftDeclines)
     EXPECT_THAT(Show(NodeState::UP), testing::Not(HasSubstr(line))) << "a log says it once";
 }
 
+TEST_F(FleetView, TellsOnceHowManyFlyTheSearchArea)
+{
+    auto list = std::make_shared<Ground::AreaList>();
+    _workspace.AddPublishSubscribeMessage("AreaList", list);
+    Start({"uav1"});
+    Ground::AreaStatus &area = list->items.emplace_back();
+    area.number = 2;
+    Ground::AreaAnswer &answer = area.answers.emplace_back();
+    answer.node = "uav1";
+    answer.progress = Ground::AreaProgress::AREA_DECLINED;
+    list->PostMessage();
+    const std::string line = "         Search area: 0 of 1 fly area 2; declined by uav1\n";
+    EXPECT_THAT(Show(NodeState::UP), HasSubstr(line));
+    EXPECT_THAT(Show(NodeState::UP), testing::Not(HasSubstr(line))) << "a log says it once";
+    list->items[0].answers[0].progress = Ground::AreaProgress::AREA_FLOWN;
+    list->PostMessage();
+    EXPECT_THAT(Show(NodeState::UP), HasSubstr("Search area: 1 of 1 fly area 2\n"));
+}
+
+TEST_F(FleetView, ShowsNoNumbersOfABadPosition)
+{
+    Start({"uav1"});
+    _pose->altitude_m = 1e300;
+    _pose->PostMessage();
+    const std::string text = Show(NodeState::UP);
+    EXPECT_THAT(text, HasSubstr(" s) bad position, mission"));
+    EXPECT_THAT(text, HasSubstr("uav1: bad position: altitude must be from -1000 to 30000, not 1e+300\n"));
+}
+
 TEST_F(FleetView, TellsWhyACommandIsDeclined)
 {
     auto list = std::make_shared<Ground::CommandList>();

@@ -1,10 +1,12 @@
 #include "AircraftFollower.h"
 
+#include <chrono>
 #include <limits>
 
 namespace Ground
 {
 AircraftFollower::AircraftFollower(const std::string &node, Rabit::RabitWorkspace &workspace)
+    : _workspace(workspace)
 {
     workspace.AddPublishSubscribeMessage(node + "/Pose", _pose);
     workspace.AddPublishSubscribeMessage(node + "/MissionState", _mission);
@@ -16,12 +18,29 @@ AircraftFollower::AircraftFollower(const std::string &node, Rabit::RabitWorkspac
 
 void AircraftFollower::Show(AircraftData &data)
 {
-    data.Pose = Latest(*_pose);
+    LookAtPose(data);
     data.Mission = Latest(*_mission);
     data.Findings = Latest(*_findings);
     data.Health = Latest(*_health);
     data.Targets = Latest(*_targets);
     data.Camera = Latest(*_camera);
+}
+
+void AircraftFollower::LookAtPose(AircraftData &data)
+{
+    if (!_pose->GetGlobalPublishSubscribeMessageRef())
+        return;  // the name belongs to a message of another type, which the workspace has logged
+    const Rabit::RabitClock &clock = _workspace.GetClock();
+    if (_pose->FetchMessage() && _pose->WasPosted())
+    {
+        const double nowS = std::chrono::duration<double>(clock.Monotonic()).count();
+        _badPosition = _check.Look(*_pose, nowS - _pose->GetAgeSeconds());
+        if (_badPosition.empty())
+            _goodPose->CopyMessage(_pose.get());
+    }
+    data.BadPosition = _badPosition;
+    if (_goodPose->WasPosted())
+        data.Pose = {_goodPose.get(), _goodPose->GetAgeSeconds(clock)};
 }
 
 double AircraftFollower::SecondsSince(double gpsTimeS) const

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "PositionCheck.h"
 #include "StationData.h"
 
 #include <rabit/RabitWorkspace.h>
@@ -19,13 +20,20 @@ public:
     AircraftFollower(const std::string &node, Rabit::RabitWorkspace &workspace);
 
     // Fetches the latest of each, and fills in the messages that have come, with their ages. The data
-    // points into this object.
+    // points into this object. The pose is the last one with a good position: it grows old while bad ones
+    // come.
     void Show(AircraftData &data);
     // Seconds since that time by the clock of the aircraft, computed from its last pose, which carries that
     // clock and has an age. NaN if there is no pose. Call it after Show, which fetches the pose.
     double SecondsSince(double gpsTimeS) const;
 
 private:
+    void LookAtPose(AircraftData &data);
+
+    Rabit::RabitWorkspace &_workspace;
+    PositionCheck _check;
+    std::string _badPosition;                                              // of the newest pose
+    std::shared_ptr<Uav::Pose> _goodPose = std::make_shared<Uav::Pose>();  // registered under no name
     std::shared_ptr<Uav::Pose> _pose = std::make_shared<Uav::Pose>();
     std::shared_ptr<Uav::MissionState> _mission = std::make_shared<Uav::MissionState>();
     std::shared_ptr<Uav::Findings> _findings = std::make_shared<Uav::Findings>();

@@ -1,5 +1,6 @@
 #include "EventLog.h"
 
+#include "AreaLines.h"
 #include "WireNames.h"
 
 #include <iterator>
@@ -63,11 +64,8 @@ void EventLog::Look(const StationData &now)
     LookAtTargets(now);
     if (now.Commands)
         LookAtCommands(*now.Commands.Content);
-    if (now.Area && now.Area.Content->number != _area)
-    {
-        _area = now.Area.Content->number;
-        Add(Weight::Info, "", "Search area " + std::to_string(_area) + " is in force");
-    }
+    if (now.Areas && !now.Areas.Content->items.empty())
+        LookAtArea(now.Areas.Content->items.back());
     LookAtProblems(now);
 }
 
@@ -81,6 +79,7 @@ void EventLog::LookAtAircraft(const AircraftData &aircraft)
                 WithReason(ToText(aircraft.State), aircraft.Reason));
         known.State = aircraft.State;
     }
+    LookAtPosition(aircraft, known);
     if (aircraft.Mission && known.Mode != aircraft.Mission.Content->mode)
     {
         known.Mode = aircraft.Mission.Content->mode;
@@ -109,6 +108,38 @@ void EventLog::LookAtAircraft(const AircraftData &aircraft)
             WithReason(known.WantsHome ? "goes home by itself" : "need not be at home any more; this is over",
                        known.HomeReason));
     }
+}
+
+void EventLog::LookAtPosition(const AircraftData &aircraft, Known &known)
+{
+    if (!aircraft.BadPosition.empty())
+    {
+        if (!known.BadAtS)
+            Add(Weight::Warning, aircraft.Node, WithReason("bad position", aircraft.BadPosition));
+        known.BadAtS = _nowS;
+    }
+    else if (known.BadAtS && _nowS - *known.BadAtS >= PositionHoldsS)
+    {
+        known.BadAtS.reset();
+        Add(Weight::Info, aircraft.Node, "has a good position again");
+    }
+}
+
+void EventLog::LookAtArea(const AreaStatus &area)
+{
+    if (area.number != _area)
+    {
+        _area = area.number;
+        _areaSinceS = _nowS;
+        _areaText.clear();
+        Add(Weight::Info, "", "Search area " + std::to_string(_area) + " is given to the fleet");
+    }
+    const bool isAwaited = CountOf(area, AreaProgress::AREA_SENT) > 0 && _nowS - _areaSinceS < AreaAnswersS;
+    const std::string text = AreaText(area);
+    if (area.answers.empty() || isAwaited || text == _areaText)
+        return;
+    _areaText = text;
+    Add(IsFlownByAll(area) ? Weight::Info : Weight::Warning, "", text);
 }
 
 void EventLog::LookAtTargets(const StationData &now)

@@ -40,6 +40,10 @@ public:
     // A problem is an event once it has lasted for this long. By then, the texts of other nodes' problems
     // have come.
     static constexpr double ProblemLastsS = 5;
+    // The outcome of a search area is an event once all aircraft have answered, or after this time.
+    static constexpr double AreaAnswersS = 5;
+    // An aircraft has good positions again once no bad one has come for this time.
+    static constexpr double PositionHoldsS = 5;
 
     void Look(const StationData &now);
 
@@ -57,10 +61,13 @@ private:
         std::string HomeReason;
         bool WithoutOrders = false;
         std::string AreaDeclined;
+        std::optional<double> BadAtS;  // when its position was bad last; none: it has good ones again
     };
 
     void LookAtAircraft(const AircraftData &aircraft);
     void LookAtTargets(const StationData &now);
+    void LookAtPosition(const AircraftData &aircraft, Known &known);
+    void LookAtArea(const AreaStatus &area);
     void LookAtCommands(const CommandList &list);
     void LookAtProblems(const StationData &now);
     void Add(Weight weight, const std::string &node, const std::string &text);
@@ -77,7 +84,9 @@ private:
         bool Told = false;
     };
     std::map<std::string, KnownProblem> _problems;  // by node and text
-    std::uint32_t _area = 0;
+    std::uint32_t _area = 0;                        // number of the wanted one
+    double _areaSinceS = 0;
+    std::string _areaText;  // the last one that was told
 };
 
 }  // namespace Ground

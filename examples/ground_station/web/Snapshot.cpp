@@ -1,5 +1,7 @@
 #include "Snapshot.h"
 
+#include "AreaLines.h"
+#include "Limits.h"
 #include "TargetName.h"
 #include "WireNames.h"
 
@@ -25,9 +27,18 @@ Json Rounded(double value, double steps)
         return nullptr;
     return std::round(scaled) / steps;
 }
-Json Degrees(double value)
+// Null also if it is out of range: no position on the earth has that number.
+Json Degrees(double value, const Common::Range &range)
 {
-    return Rounded(value, 1e7);
+    return range.Contains(value) ? Rounded(value, 1e7) : Json(nullptr);
+}
+Json Latitude(double value)
+{
+    return Degrees(value, Common::LatitudeDeg);
+}
+Json Longitude(double value)
+{
+    return Degrees(value, Common::LongitudeDeg);
 }
 Json Short(double value)
 {
@@ -36,8 +47,8 @@ Json Short(double value)
 
 Json ToJson(const Uav::Pose &pose)
 {
-    return {{"latitude_deg", Degrees(pose.latitude_deg)},
-            {"longitude_deg", Degrees(pose.longitude_deg)},
+    return {{"latitude_deg", Latitude(pose.latitude_deg)},
+            {"longitude_deg", Longitude(pose.longitude_deg)},
             {"altitude_m", Rounded(pose.altitude_m, 10)},
             {"speed_mps", Rounded(std::hypot(static_cast<double>(pose.velocity_north_mps),
                                              static_cast<double>(pose.velocity_east_mps)),
@@ -64,8 +75,8 @@ void AddPlaces(Json &object, const Uav::MissionState &mission)
     object["floor_m"] = mission.has_floor ? Rounded(static_cast<double>(mission.floor_m), 10) : Json(nullptr);
     object["ground_m"] =
         mission.has_ground ? Rounded(static_cast<double>(mission.ground_m), 10) : Json(nullptr);
-    object["home"] = mission.has_home ? Json{{"latitude_deg", Degrees(mission.home_latitude_deg)},
-                                             {"longitude_deg", Degrees(mission.home_longitude_deg)}}
+    object["home"] = mission.has_home ? Json{{"latitude_deg", Latitude(mission.home_latitude_deg)},
+                                             {"longitude_deg", Longitude(mission.home_longitude_deg)}}
                                       : Json(nullptr);
 }
 
@@ -91,8 +102,8 @@ Json ToJson(const ListedTarget &listed)
         const Uav::Finding &finding = listed.Found->Finding;
         item["node"] = listed.Found->Aircraft;
         item["stage"] = WireName(finding.stage);
-        item["latitude_deg"] = Degrees(finding.latitude_deg);
-        item["longitude_deg"] = Degrees(finding.longitude_deg);
+        item["latitude_deg"] = Latitude(finding.latitude_deg);
+        item["longitude_deg"] = Longitude(finding.longitude_deg);
         item["validated_by"] = finding.validated_by;
         item["tracked_s"] = Rounded(static_cast<double>(finding.tracked_s), 10);
         item["seen_by"] = Json::array({listed.Found->Aircraft});
@@ -104,8 +115,8 @@ Json ToJson(const ListedTarget &listed)
     item["age_s"] = Short(listed.AgeS);
     item["unseen_s"] = Rounded(listed.UnseenS, 10);
     item["found_by"] = target.found_by;
-    item["latitude_deg"] = Degrees(target.latitude_deg);
-    item["longitude_deg"] = Degrees(target.longitude_deg);
+    item["latitude_deg"] = Latitude(target.latitude_deg);
+    item["longitude_deg"] = Longitude(target.longitude_deg);
     item["velocity_north_mps"] = Rounded(static_cast<double>(target.velocity_north_mps), 100);
     item["velocity_east_mps"] = Rounded(static_cast<double>(target.velocity_east_mps), 100);
     item["sigma_major_m"] = Rounded(static_cast<double>(target.sigma_major_m), 10);
@@ -120,15 +131,15 @@ Json ToJson(const Uav::CameraView &view)
 {
     Json corners = Json::array();
     for (const Uav::GroundPoint &corner : view.corners)
-        corners.push_back({Degrees(corner.latitude_deg), Degrees(corner.longitude_deg)});
+        corners.push_back({Latitude(corner.latitude_deg), Longitude(corner.longitude_deg)});
     return {{"frame", view.frame}, {"corners", std::move(corners)}};
 }
 
-Json ToJson(const Uav::SearchArea &area)
+Json ToJson(const AreaStatus &area)
 {
     return {{"number", area.number},
-            {"latitude_deg", Degrees(area.latitude_deg)},
-            {"longitude_deg", Degrees(area.longitude_deg)},
+            {"latitude_deg", Latitude(area.latitude_deg)},
+            {"longitude_deg", Longitude(area.longitude_deg)},
             {"north_m", Rounded(static_cast<double>(area.north_m), 10)},
             {"east_m", Rounded(static_cast<double>(area.east_m), 10)},
             {"altitude_m", Rounded(static_cast<double>(area.altitude_m), 10)},
@@ -136,10 +147,38 @@ Json ToJson(const Uav::SearchArea &area)
             {"lane_m", Rounded(static_cast<double>(area.lane_m), 10)}};
 }
 
+// With the outcome at each aircraft.
+Json ToJson(const AreaStatus &area, double nowS)
+{
+    Json answers = Json::array();
+    for (const AreaAnswer &answer : area.answers)
+        answers.push_back({{"node", answer.node},
+                           {"progress", WireName(answer.progress)},
+                           {"reason", answer.reason},
+                           {"flies", answer.flies}});
+    Json object = ToJson(area);
+    object["given_age_s"] = Short(nowS - area.given_s);
+    object["flown_by"] = CountOf(area, AreaProgress::AREA_FLOWN);
+    object["answers"] = std::move(answers);
+    return object;
+}
+
+// Adds `areas`, the last ones with the wanted one at the end, and the numbers of that one as `area`.
+void AddAreas(Json &snapshot, const Aged<AreaList> &list)
+{
+    Json areas = Json::array();
+    if (list)
+        for (const AreaStatus &area : list.Content->items)
+            areas.push_back(ToJson(area, list.Content->posted_s + list.AgeS));
+    snapshot["areas"] = std::move(areas);
+    if (list && !list.Content->items.empty())
+        snapshot["area"] = ToJson(list.Content->items.back());
+}
+
 Json ToJson(const Uav::Geofence &fence)
 {
-    return {{"latitude_deg", Degrees(fence.latitude_deg)},
-            {"longitude_deg", Degrees(fence.longitude_deg)},
+    return {{"latitude_deg", Latitude(fence.latitude_deg)},
+            {"longitude_deg", Longitude(fence.longitude_deg)},
             {"radius_m", Rounded(fence.radius_m, 10)}};
 }
 
@@ -163,6 +202,8 @@ Json ToJson(const AircraftData &aircraft)
                    {"delivery_rate", Rounded(aircraft.DeliveryRate, 1)}};
     if (!aircraft.Path.empty())
         object["path"] = aircraft.Path;
+    if (!aircraft.BadPosition.empty())
+        object["bad_position"] = aircraft.BadPosition;
     if (aircraft.WithoutOrders)
         object["without_orders"] = true;
     if (aircraft.Replay)
@@ -200,8 +241,8 @@ Json ToJson(const CommandList &list, double ageS)
                      {"changed_age_s", Short(nowS - command->changed_s)}};
         if (command->kind == OrderKind::ORDER_GOTO)
         {
-            item["latitude_deg"] = Degrees(command->latitude_deg);
-            item["longitude_deg"] = Degrees(command->longitude_deg);
+            item["latitude_deg"] = Latitude(command->latitude_deg);
+            item["longitude_deg"] = Longitude(command->longitude_deg);
             item["altitude_m"] = Rounded(command->altitude_m, 10);
         }
         items.push_back(std::move(item));
@@ -309,7 +350,7 @@ std::string SnapshotText(const StationData &data, const std::deque<StationEvent>
                      {"problems", ToJson(data.Problems)},
                      {"replayed", data.Replayed},
                      {"radio", ToJson(data.Radio)}};
-    Add(snapshot, "area", data.Area);
+    AddAreas(snapshot, data.Areas);
     if (data.Fence && data.Fence.Content->radius_m > 0)
         Add(snapshot, "fence", data.Fence);
     snapshot["commands"] = data.Commands ? ToJson(*data.Commands.Content, data.Commands.AgeS) : Json::array();

@@ -57,9 +57,10 @@ struct AircraftData
     std::string Reason;       // why it is not UP
     double HeardS = Unknown;  // since it was last heard
     double RoundTripS = Unknown;
-    std::string Path{};  // by which it is reached; empty: there is only one
+    std::string Path{};             // by which it is reached; empty: there is only one
     double DeliveryRate = Unknown;  // bytes a second of queue messages that arrive there
-    Aged<Uav::Pose> Pose;
+    Aged<Uav::Pose> Pose;           // the last one with a good position
+    std::string BadPosition{};      // why the position of the newest pose is bad; empty if it is not
     Aged<Uav::MissionState> Mission;
     Aged<Uav::Health> Health;
     Aged<Uav::Findings> Findings;
@@ -81,7 +82,7 @@ struct StationData
     double FleetAgeS = std::numeric_limits<double>::infinity();  // of the Fleet with the states of the
                                                                  // aircraft
     std::vector<AircraftData> Aircraft;
-    Aged<Uav::SearchArea> Area;
+    Aged<AreaList> Areas;
     Aged<Uav::Geofence> Fence;
     Aged<CommandList> Commands;
     std::vector<Rabit::Gateway::Problem> Problems;

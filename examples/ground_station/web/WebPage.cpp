@@ -36,7 +36,7 @@ WebPage::WebPage(Settings settings, std::unique_ptr<WebServer> server, Rabit::Ra
     AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
     AddPublishSubscribeMessage("CommandList", _commands);
     AddPublishSubscribeMessage("CommandTally", _tally);
-    AddPublishSubscribeMessage("SearchArea", _area);
+    AddPublishSubscribeMessage("AreaList", _areas);
     AddPublishSubscribeMessage("Geofence", _fence);
     AddManagerMessageQueue("Pictures", _pictureQueue);
     for (const std::string &node : _settings.Expected)
@@ -94,7 +94,7 @@ void WebPage::Look()
     _data.Life = _life;
     _data.Number = ++_number;
     _data.FleetAgeS = _fleet->GetAgeSeconds();
-    _data.Area = Latest(*_area);
+    _data.Areas = Latest(*_areas);
     _data.Fence = Latest(*_fence);
     _data.Commands = Latest(*_commands);
     _tally->FetchMessage();
@@ -111,7 +111,7 @@ void WebPage::Look()
         Show(data, *follower);
         const bool expected =
             std::find(_settings.Expected.begin(), _settings.Expected.end(), node) != _settings.Expected.end();
-        if (expected || data.Pose || data.Mission)
+        if (expected || data.Pose || data.Mission || !data.BadPosition.empty())
             _data.Aircraft.push_back(std::move(data));
     }
     _data.NowS = NowS();

@@ -24,7 +24,7 @@ namespace Ground
 // Shows the fleet on a page in the browser, and accepts orders from it: the manager `WebPage`.
 //
 // Fetches: Gateway/Fleet, from which it learns the nodes; the messages of each aircraft that AircraftFollower
-//          lists; CommandList, CommandTally and SearchArea of the Commander.
+//          lists; CommandList, CommandTally, AreaList and Geofence of the Commander.
 // Queue:   Pictures takes Uav::Picture, from whichever aircraft has one.
 // Sends:   Ground::Order and Uav::SearchArea to the queue Commands, as the page asks.
 //
@@ -92,7 +92,7 @@ private:
     std::shared_ptr<CommandList> _commands = std::make_shared<CommandList>();
     std::shared_ptr<CommandTally> _tally = std::make_shared<CommandTally>();
     std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
-    std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
+    std::shared_ptr<AreaList> _areas = std::make_shared<AreaList>();
     const std::unique_ptr<WebServer> _server;  // last, as its thread uses the others
 };
 

@@ -21,7 +21,7 @@ protected:
     Uav::Health _health;
     Uav::Findings _findings;
     Ground::CommandList _commands;
-    Uav::SearchArea _area;
+    Ground::AreaList _areas;
     std::uint64_t _told = 0;
 
     void SetUp() override { _data.Aircraft.emplace_back().Node = "uav1"; }
@@ -140,16 +140,61 @@ TEST_F(EventLog, TellsThatAnAircraftIsBackWithoutOrders)
     EXPECT_THAT(New(), ElementsAre());
 }
 
-TEST_F(EventLog, TellsOfTheSearchAreaAndOfProblemsOnce)
+TEST_F(EventLog, TellsThatASearchAreaIsGivenAndThenHowManyFlyIt)
 {
-    _area.number = 2;
-    _data.Area = {&_area, 0};
+    Ground::AreaStatus &area = _areas.items.emplace_back();
+    area.number = 2;
+    area.answers.resize(3);
+    for (std::size_t i = 0; i < 3; ++i)
+        area.answers[i].node = "uav" + std::to_string(i + 1);
+    _data.Areas = {&_areas, 0};
+    EXPECT_THAT(New(), ElementsAre("|Search area 2 is given to the fleet"));
+    area.answers[0].progress = Ground::AreaProgress::AREA_DECLINED;
+    EXPECT_THAT(New(), ElementsAre()) << "the others have not answered";
+    area.answers[1].progress = area.answers[2].progress = Ground::AreaProgress::AREA_DECLINED;
+    EXPECT_THAT(New(), ElementsAre("|0 of 3 fly area 2; declined by uav1, uav2, uav3"));
+    EXPECT_EQ(_log.Events().back().How, Weight::Warning);
+    EXPECT_THAT(New(), ElementsAre());
+    for (auto &answer : area.answers)
+        answer.progress = Ground::AreaProgress::AREA_FLOWN;
+    EXPECT_THAT(New(), ElementsAre("|3 of 3 fly area 2"));
+    EXPECT_EQ(_log.Events().back().How, Weight::Info);
+}
+
+TEST_F(EventLog, WaitsNotForEverForTheAnswersToASearchArea)
+{
+    Ground::AreaStatus &area = _areas.items.emplace_back();
+    area.number = 2;
+    area.answers.emplace_back().node = "uav1";
+    _data.Areas = {&_areas, 0};
+    New();
+    _data.NowS += Ground::EventLog::AreaAnswersS;
+    EXPECT_THAT(New(), ElementsAre("|0 of 1 fly area 2; not answered by uav1"));
+}
+
+TEST_F(EventLog, TellsOfABadPositionOnceUntilItIsGoodAgainForAWhile)
+{
+    New();
+    Aircraft().BadPosition = "latitude must be from -90 to 90, not 95";
+    EXPECT_THAT(New(), ElementsAre("uav1|bad position: latitude must be from -90 to 90, not 95"));
+    EXPECT_EQ(_log.Events().back().How, Weight::Warning);
+    Aircraft().BadPosition = "";
+    EXPECT_THAT(New(), ElementsAre());
+    Aircraft().BadPosition = "latitude must be from -90 to 90, not 96";
+    EXPECT_THAT(New(), ElementsAre()) << "that is the same trouble";
+    Aircraft().BadPosition = "";
+    _data.NowS += Ground::EventLog::PositionHoldsS;
+    EXPECT_THAT(New(), ElementsAre("uav1|has a good position again"));
+}
+
+TEST_F(EventLog, TellsOfProblemsOnce)
+{
     Rabit::Gateway::Problem problem;
     problem.subject = "subscribe Pose";
     problem.node = "uav3";
     problem.reason = "other type";
     _data.Problems = {problem, problem};
-    EXPECT_THAT(New(), ElementsAre("|Search area 2 is in force"));
+    EXPECT_THAT(New(), ElementsAre());
     _data.NowS += Ground::EventLog::ProblemLastsS;
     EXPECT_THAT(New(), ElementsAre("uav3|subscribe Pose: other type"));
     EXPECT_THAT(New(), ElementsAre());

@@ -95,6 +95,58 @@ TEST_F(Snapshot, TellsNothingOfWhatIsNotKnown)
     EXPECT_EQ(shown["commands"], Json::array());
 }
 
+TEST_F(Snapshot, TellsNoPlaceThatIsNotOnTheEarth)
+{
+    _pose.latitude_deg = 95;
+    _pose.longitude_deg = 1e300;
+    Aircraft().Pose = {&_pose, 0};
+    Aircraft().BadPosition = "latitude must be from -90 to 90, not 95";
+    Uav::CameraView camera;
+    camera.corners[0].latitude_deg = -91;
+    Aircraft().Camera = {&camera, 0};
+    Uav::Targets targets;
+    targets.items.emplace_back().longitude_deg = 181;
+    Aircraft().Targets = {&targets, 0};
+    const Json shown = Shown();
+    const Json &aircraft = shown["aircraft"][0];
+    EXPECT_TRUE(aircraft["pose"]["latitude_deg"].is_null());
+    EXPECT_TRUE(aircraft["pose"]["longitude_deg"].is_null());
+    EXPECT_EQ(aircraft["bad_position"], "latitude must be from -90 to 90, not 95");
+    EXPECT_TRUE(aircraft["camera"]["corners"][0][0].is_null());
+    EXPECT_TRUE(shown["targets"][0]["longitude_deg"].is_null());
+}
+
+TEST_F(Snapshot, TellsEachSearchAreaWithItsOutcome)
+{
+    EXPECT_EQ(Shown()["areas"], Json::array());
+    Ground::AreaList areas;
+    areas.posted_s = 20;
+    areas.items.resize(2);
+    areas.items[0].number = 1;
+    Ground::AreaStatus &wanted = areas.items[1];
+    wanted.number = 2;
+    wanted.north_m = 400;
+    wanted.given_s = 18;
+    wanted.answers.resize(2);
+    wanted.answers[0].node = "uav1";
+    wanted.answers[0].progress = Ground::AreaProgress::AREA_DECLINED;
+    wanted.answers[0].reason = "too low";
+    wanted.answers[0].flies = 1;
+    wanted.answers[1].node = "uav2";
+    wanted.answers[1].progress = Ground::AreaProgress::AREA_FLOWN;
+    _data.Areas = {&areas, 0.5};
+    const Json shown = Shown();
+    EXPECT_EQ(shown["area"]["number"], 2) << "the wanted one";
+    EXPECT_EQ(shown["area"]["north_m"], 400);
+    ASSERT_EQ(shown["areas"].size(), 2u);
+    const Json &one = shown["areas"][1];
+    EXPECT_EQ(one["number"], 2);
+    EXPECT_EQ(one["given_age_s"], 2.5);
+    EXPECT_EQ(one["flown_by"], 1);
+    EXPECT_EQ(one["answers"][0],
+              Json({{"node", "uav1"}, {"progress", "declined"}, {"reason", "too low"}, {"flies", 1}}));
+}
+
 TEST_F(Snapshot, TellsFloorGroundAndHomeWhereTheyAreKnown)
 {
     Aircraft().Mission = {&_mission, 0};

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -116,6 +117,42 @@ TEST_F(WebPage, ShowsAnAircraftOnceItsPoseComes)
     EXPECT_EQ(shown["aircraft"][0]["pose"]["latitude_deg"], 47);
 }
 
+TEST_F(WebPage, KeepsTheLastGoodPositionAndSaysThatTheNewestIsBad)
+{
+    Start();
+    _pose->latitude_deg = 47;
+    _pose->altitude_m = 500;
+    _pose->PostMessage();
+    PostFleet({{"uav1", NodeState::UP}});
+    EXPECT_FALSE(Shown()["aircraft"][0].contains("bad_position"));
+    for (const double latitude : {95.0, std::numeric_limits<double>::quiet_NaN(), 48.0})
+    {
+        _pose->latitude_deg = latitude;
+        _pose->PostMessage();
+        const Json shown = Shown()["aircraft"][0];
+        EXPECT_TRUE(shown.contains("bad_position")) << latitude;
+        EXPECT_EQ(shown["pose"]["latitude_deg"], 47) << latitude;
+    }
+    EXPECT_NEAR(Shown()["aircraft"][0]["pose"]["age_s"].get<double>(), 0.5, 0.001) << "it grows old";
+    _pose->latitude_deg = 47;
+    _pose->PostMessage();
+    const Json shown = Shown()["aircraft"][0];
+    EXPECT_FALSE(shown.contains("bad_position"));
+    EXPECT_NEAR(shown["pose"]["age_s"].get<double>(), 0.1, 0.001);
+}
+
+TEST_F(WebPage, ShowsAnAircraftThatHasHadBadPositionsOnly)
+{
+    Start();
+    _pose->altitude_m = 1e300;
+    _pose->PostMessage();
+    PostFleet({{"uav1", NodeState::UP}});
+    const Json shown = Shown();
+    ASSERT_EQ(shown["aircraft"].size(), 1u);
+    EXPECT_EQ(shown["aircraft"][0]["bad_position"], "altitude must be from -1000 to 30000, not 1e+300");
+    EXPECT_FALSE(shown["aircraft"][0].contains("pose"));
+}
+
 TEST_F(WebPage, ShowsAnExpectedAircraftBeforeItIsHeard)
 {
     Start({"uav2"});
@@ -188,15 +225,15 @@ TEST_F(WebPage, LetsWhatItShowsGrowOld)
 TEST_F(WebPage, ShowsTheCommandsAndTheSearchArea)
 {
     auto list = std::make_shared<Ground::CommandList>();
-    auto area = std::make_shared<Uav::SearchArea>();
+    auto areas = std::make_shared<Ground::AreaList>();
     _workspace.AddPublishSubscribeMessage("CommandList", list);
-    _workspace.AddPublishSubscribeMessage("SearchArea", area);
+    _workspace.AddPublishSubscribeMessage("AreaList", areas);
     Start();
     list->items.emplace_back().node = "uav1";
     list->items.back().steps.emplace_back();
     list->PostMessage();
-    area->number = 4;
-    area->PostMessage();
+    areas->items.emplace_back().number = 4;
+    areas->PostMessage();
     const Json shown = Shown();
     EXPECT_EQ(shown["commands"][0]["node"], "uav1");
     EXPECT_EQ(shown["area"]["number"], 4);

@@ -5,11 +5,12 @@
 // [REASON]` (the last command comes to this step, a number of Ground::CommandProgress), `decline NODE REASON`
 // (the search area), `orders NODE` (it is back without), `problems COUNT` (the number of problems now),
 // `radio held` (it has a budget, and two in five posts of Pose and some messages for uav2 are held back),
-// `nofix NODE` (its position is 0, 0), `noplace NODE` (its position is no number), `far NODE` (it is 60 km
-// away), `noheart NODE` (its Health stops), `radio free` (not limited), `replay NODE` (it plays a recording),
-// `fararea` (the search area is 3336 km away), `silence` (nothing is posted any more). With `poser` the last
-// aircraft posts nothing but poses. The program ends when the lines end. The ground is at 430 m, and
-// each aircraft has a floor of 460 m.
+// `nofix NODE` (its position is 0, 0), `noplace NODE` (its position is no number), `badplace NODE` (its
+// latitude is 95), `goodplace NODE` (neither any more), `far NODE` (it is 60 km away), `noheart NODE` (its
+// Health stops), `radio free` (not limited), `replay NODE` (it plays a recording), `fararea` (the search area
+// is 3336 km away), `silence` (nothing is posted any more). With `poser` the last aircraft posts nothing but
+// poses. The program ends when the lines end. The ground is at 430 m, and each aircraft has a floor of 460 m.
+#include "AreaLog.h"
 #include "WebPage.h"
 #include "WebServer.h"
 
@@ -85,6 +86,7 @@ struct FlyingAircraft
     bool Flies = true;
     bool HasFix = true;     // else its position is 0, 0
     bool HasPlace = true;   // else its position is no number
+    bool IsOnEarth = true;  // else its latitude is 95
     double NorthDeg = 0;    // added to its latitude
     bool HasHealth = true;  // else it posts none any more
     float Battery = 0;      // percent; 0: the script says nothing of it
@@ -110,7 +112,7 @@ public:
           _aircraft(static_cast<std::size_t>(aircraft))
     {
         AddPublishSubscribeMessage(Rabit::FleetMessageName, _fleet);
-        AddPublishSubscribeMessage("SearchArea", _area);
+        AddPublishSubscribeMessage("AreaList", _areas);
         AddPublishSubscribeMessage("Geofence", _fence);
         AddPublishSubscribeMessage("CommandList", _commands);
         AddPublishSubscribeMessage("CommandTally", _tally);
@@ -139,7 +141,7 @@ public:
         _area->lane_m = 60;
         _area->number = 1;
         if (_hasArea)
-            _area->PostMessage();
+            PostArea();
     }
 
     void ExecuteUnitOfWork() final
@@ -150,6 +152,7 @@ public:
             return;
         ++_step;
         PostFleet();
+        PostAreas();
         for (std::size_t i = 0; i < _aircraft.size(); ++i)
             if (_aircraft[i].Flies)
                 Fly(_aircraft[i], static_cast<int>(i));
@@ -200,6 +203,10 @@ private:
             one.HasFix = false;
         if (what == "noplace")
             one.HasPlace = false;
+        if (what == "badplace")
+            one.IsOnEarth = false;
+        if (what == "goodplace")
+            one.HasPlace = one.IsOnEarth = true;
         if (what == "far")
             one.NorthDeg = 0.54;
         if (what == "noheart")
@@ -239,7 +246,28 @@ private:
     {
         _area->latitude_deg = 17.3977;
         ++_area->number;
-        _area->PostMessage();
+        PostArea();
+    }
+    double NowS() const { return _step * 0.1; }
+    void PostArea()
+    {
+        _areaLog.Given(*_area, NowS());
+        PostAreas();
+    }
+    // As the Commander does.
+    void PostAreas()
+    {
+        std::vector<Ground::AreaReport> reports;
+        for (const FlyingAircraft &one : _aircraft)
+            if (one.Mission->WasPosted())
+                reports.push_back({one.Node, one.State == NodeState::LOST, one.Mission->search_area,
+                                   one.Mission->area_declined, NowS()});
+        _areaLog.Look(reports);
+        if (_areaLog.Areas() == _areas->items)
+            return;
+        _areas->posted_s = NowS();
+        _areas->items = _areaLog.Areas();
+        _areas->PostMessage();
     }
     void SetProblems(std::size_t count)
     {
@@ -280,7 +308,7 @@ private:
                           << area->north_m << ' ' << area->east_m << ' ' << area->altitude_m << std::endl;
                 area->number = _area->number + 1;
                 _area->CopyMessage(area);
-                _area->PostMessage();
+                PostArea();
             }
         }
     }
@@ -343,6 +371,8 @@ private:
         one.Pose->latitude_deg += one.NorthDeg;
         if (!one.HasPlace)
             one.Pose->latitude_deg = one.Pose->longitude_deg = std::numeric_limits<double>::quiet_NaN();
+        if (!one.IsOnEarth)
+            one.Pose->latitude_deg = 95;
         one.Pose->altitude_m = 500 + index;
         one.Pose->velocity_north_mps = static_cast<float>(-std::sin(angle) * 12);
         one.Pose->velocity_east_mps = static_cast<float>(std::cos(angle) * 12);
@@ -356,6 +386,8 @@ private:
         if (_step % 10 != 1)
             return;
         one.Mission->mode = Uav::MissionMode::MISSION_SEARCH;
+        if (one.Mission->area_declined.empty())
+            one.Mission->search_area = _areaLog.Areas().empty() ? 0 : _area->number;
         one.Mission->text = _hostile ? Markup : "lane 2 of 7";
         one.Mission->target = _hostile ? "\"><svg onload=window.pwned=1>" : "";
         one.Mission->partner = one.Mission->target;
@@ -423,6 +455,8 @@ private:
     int _step = 0;
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::shared_ptr<Uav::SearchArea> _area = std::make_shared<Uav::SearchArea>();
+    Ground::AreaLog _areaLog;
+    std::shared_ptr<Ground::AreaList> _areas = std::make_shared<Ground::AreaList>();
     std::shared_ptr<Uav::Geofence> _fence = std::make_shared<Uav::Geofence>();
     std::shared_ptr<Ground::CommandList> _commands = std::make_shared<Ground::CommandList>();
     std::shared_ptr<Ground::CommandTally> _tally = std::make_shared<Ground::CommandTally>();

@@ -1,6 +1,7 @@
 // The search area: a draft that is moved and resized by mouse, keys or numbers, and then sent.
 /* global L */
 import {byId, setText} from './dom.js';
+import {countOf, outcomesOf} from './areas.js';
 import {askedOfDistance} from './far.js';
 import {outsideOf} from './fence.js';
 import {corners, moved, offset} from './geo.js';
@@ -48,12 +49,18 @@ export class SearchAreaEditor {
     return this.draft ?? this.model.snapshot?.area ?? null;
   }
 
+  // How many aircraft fly the wanted area, and why the others do not.
+  get outcome() {
+    const last = this.model.snapshot?.areas?.at(-1);
+    return last ? [`${countOf(last)} fly it`, ...outcomesOf(last)].join('; ') : '';
+  }
+
   // Once for each snapshot.
   update() {
-    const inForce = this.model.snapshot?.area;
-    if (!this.draft && inForce && inForce.number !== this.shownNumber) {
-      this.shownNumber = inForce.number;
-      this.fillFields(inForce);
+    const wanted = this.model.snapshot?.area;
+    if (!this.draft && wanted && wanted.number !== this.shownNumber) {
+      this.shownNumber = wanted.number;
+      this.fillFields(wanted);
       this.placeHandles();
     }
     const {live, fleetFresh} = this.model;
@@ -67,22 +74,22 @@ export class SearchAreaEditor {
     panel.classList.toggle('draft', this.draft !== null);
     const {area} = this;
     const size = area ? `${Math.round(area.north_m)} × ${Math.round(area.east_m)} m at ${Math.round(area.altitude_m)} m` : 'none';
-    setText(byId('area-summary'), this.draft ? `▲ new, not sent: ${size}` : area ? `${area.number}: ${size}` : size);
+    setText(byId('area-summary'), this.draft ? `▲ new, not sent: ${size}` : area ? `${area.number}: ${size}, ${countOf(this.model.snapshot.areas.at(-1))} fly it` : size);
     if (this.draft && !live) setText(byId('area-note'), '✕ There is no connection to the ground station: nothing can be sent.');
     else if (this.draft && !fleetFresh) setText(byId('area-note'), '▲ The gateway of the ground station is silent: nobody knows whether this will arrive.');
-    else if (this.draft) setText(byId('area-note'), `Not sent yet: the fleet searches the area that is drawn with a full line. ${this.height.says}`);
-    else if (inForce) setText(byId('area-note'), `Area ${inForce.number}. ${this.height.says} Drag its handles on the map, or change the numbers.`);
+    else if (this.draft) setText(byId('area-note'), `Not sent yet. An area that aircraft fly is drawn with a full line. ${this.height.says}`);
+    else if (wanted) setText(byId('area-note'), `Area ${wanted.number}: ${this.outcome}. ${this.height.says} Drag its handles on the map, or change the numbers.`);
     else setText(byId('area-note'), 'There is none. “Here” puts one into the middle of the map.');
   }
 
   // What is to be known of the altitude, see describeHeight.
   get height() {
     const {model} = this;
-    const inForce = model.snapshot?.area;
+    const wanted = model.snapshot?.area;
     const poses = model.aircraft.map((one) => one.pose?.altitude_m).filter(isNumber);
     return describeHeight({
       altitude: this.area?.altitude_m,
-      ...(!this.draft ? {} : inForce ? {present: inForce.altitude_m, than: 'the area in force'}
+      ...(!this.draft ? {} : wanted ? {present: wanted.altitude_m, than: 'the wanted area'}
         : {present: poses.length > 0 ? Math.min(...poses) : undefined, than: 'the lowest aircraft'}),
       ground: knownGround(model.aircraft, this.area ? corners(this.area) : []),
       floors: model.aircraft.map((one) => [one.node, one.floor_m]),

@@ -55,14 +55,14 @@ export function drawGrid(painter, space) {
   return cell;
 }
 
-export function drawArea(painter, area, isDraft, space) {
-  if (!area) return;
+// A draft and an area that no aircraft flies have dashed lines; outcome: how many aircraft fly it.
+export function drawArea(painter, area, {isDraft = false, isFlown = false, outcome = ''}, space) {
   const colour = isDraft ? painter.colours.draft : painter.colours.area;
   const places = corners(area).map((corner) => painter.at(corner));
   painter.path(places, true);
-  painter.fill(colour, isDraft ? 0.08 : 0.05);
-  painter.stroke(colour, 2, isDraft ? [6, 4] : []);
-  const name = isDraft ? 'New search area, not sent' : `Search area ${area.number}`;
+  painter.fill(colour, isDraft ? 0.08 : isFlown ? 0.05 : 0.02);
+  painter.stroke(colour, 2, isDraft ? [6, 4] : isFlown ? [] : [12, 5, 2, 5]);
+  const name = isDraft ? 'New search area, not sent' : `Search area ${area.number}, ${outcome}`;
   const text = `${name}  ${Math.round(area.north_m)} × ${Math.round(area.east_m)} m`;
   // Above its upper edge, else inside, else below: two areas may have one corner.
   const width = painter.textWidth(text);

@@ -3,7 +3,7 @@ import {wayLeft} from './destinations.js';
 import {distance} from './geo.js';
 import {fixOf} from './model.js';
 
-// A place that is farther from an aircraft is asked about again: this, or so many sides of the search area in force.
+// A place that is farther from an aircraft is asked about again: this, or so many sides of the wanted search area.
 const FAR_M = 5000;
 const FAR_SIDES = 10;
 const MOST_NAMED = 4;

@@ -1,5 +1,6 @@
 // The lists beside the map: commands, targets, events; and the pictures under it.
 import {ageText, ageWithUnit, clockTime, fixed, isNumber, STAGES, STATES} from './format.js';
+import {countOf, isFlownByAll, outcomesOf} from './areas.js';
 import {byId, element, keepList, setAttribute, setClass, setText} from './dom.js';
 
 const STEPS = ['sent', 'delivered', 'accepted', 'done'];
@@ -11,9 +12,15 @@ export class CommandList {
     this.model = model;
     this.items = new Map();
   }
+  // Search areas are commands to the whole fleet, and stand among the others by the time at which they were given.
   update() {
-    const commands = [...(this.model.snapshot?.commands ?? [])].reverse();
-    keepList(byId('commands'), this.items, commands, (one) => one.number, () => this.make(), (item, one) => this.fill(item, one));
+    const {commands: all = [], areas = []} = this.model.snapshot ?? {};
+    const commands = [
+      ...all.map((one) => ({...one, key: `command ${one.number}`, age: one.sent_age_s})),
+      ...areas.map((one, i) => ({...one, key: `area ${one.number}`, age: one.given_age_s, isArea: true, isWanted: i === areas.length - 1})),
+    ].reverse().sort((a, b) => a.age - b.age);
+    keepList(byId('commands'), this.items, commands, ({key}) => key, () => this.make(),
+      (item, one) => (one.isArea ? this.fillArea(item, one) : this.fill(item, one)));
     byId('commands-empty').hidden = commands.length > 0;
   }
   make() {
@@ -21,6 +28,17 @@ export class CommandList {
     const item = {root, number: element('span', 'nr'), who: element('span', 'who'), kind: element('span', 'kind'), what: element('span', 'what'), when: element('span', 'when')};
     root.append(item.number, item.who, item.kind, item.what, item.when);
     return item;
+  }
+  // How many aircraft fly the area, and why the others do not.
+  fillArea(item, area) {
+    setText(item.who, 'all');
+    setText(item.kind, `area ${area.number}`);
+    setText(item.when, ageWithUnit(this.model.age(area.given_age_s)));
+    setAttribute(item.root, 'data-area', String(area.number));
+    const isBad = area.isWanted && !isFlownByAll(area);
+    const sign = isFlownByAll(area) ? '✓ ' : isBad ? '▲ ' : '';
+    setText(item.what, [`${sign}${countOf(area)} fly area ${area.number}`, ...outcomesOf(area)].join('; '));
+    setClass(item.what, isBad ? 'what bad' : 'what');
   }
   fill(item, command) {
     setText(item.number, String(command.number));

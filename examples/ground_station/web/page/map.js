@@ -3,6 +3,7 @@
 import {ageWithUnit, STATES} from './format.js';
 import {CanvasLayer} from './canvas.js';
 import {destinationsOf, wayLeft} from './destinations.js';
+import {areasToDraw, countOf} from './areas.js';
 import {blockTargets, drawArea, drawDestinations, drawFence, drawFootprints, drawGrid, drawTargets, drawTrails, Trails} from './drawing.js';
 import {byId, element, setAttribute, setText} from './dom.js';
 import {LabelSpace, placesAround} from './labels.js';
@@ -12,6 +13,7 @@ import {pageNow} from './connection.js';
 
 const SYMBOL_PX = 22;  // what the name of an aircraft keeps away from
 const OUTLIER_M = 50000;  // farther than any aircraft flies from its search area
+const IMPOSSIBLE_M = 500000;  // from the middle of the fleet: no aircraft gets there
 const FENCE_SIZES = 4;  // a fence that is more of these wide than all else is left out
 const MOST_NAMED = 4;
 const SVG = 'http://www.w3.org/2000/svg';
@@ -27,7 +29,7 @@ function makeSymbol() {
   const picture = svg('svg', {viewBox: '-14 -14 28 28', 'aria-hidden': 'true'});
   const turned = svg('g', {});
   turned.append(svg('path', {class: 'shape', d: 'M0-11 8 10 0 5-8 10Z'}));
-  picture.append(svg('circle', {class: 'touch', r: 22}), svg('circle', {class: 'ring', r: 13}), turned, svg('path', {class: 'cross', d: 'M-7-7 7 7M7-7-7 7'}));
+  picture.append(svg('circle', {class: 'touch', r: 22}), svg('circle', {class: 'ring', r: 13}), svg('circle', {class: 'mark', r: 17}), turned, svg('path', {class: 'cross', d: 'M-7-7 7 7M7-7-7 7'}));
   const label = element('span', 'label');
   root.append(picture, label);
   return {root, turned, label};
@@ -36,13 +38,24 @@ function makeSymbol() {
 const middleOf = ({latitude_deg: lat, longitude_deg: lng}) => ({lat, lng});
 const isPresent = (model) => (one) => model.state(one) !== 'lost';
 
-// What the map is fitted to: all aircraft that are not LOST and have a fix; the search area, unless it is far from all of
-// them; and the geofence, if it is not much larger than these. If nothing remains, all places that are known.
-function placesToFit(model, {area, fence}) {
+// The places without those that no aircraft of the fleet can be at: with three or more of them, those that are much farther
+// from the middle one than aircraft fly.
+export function withoutOutliers(places) {
+  if (places.length < 3) return places;
+  const middle = (values) => values.sort((a, b) => a - b)[Math.floor(values.length / 2)];
+  const centre = {lat: middle(places.map(({lat}) => lat)), lng: middle(places.map(({lng}) => lng))};
+  const near = places.filter((place) => distance(centre, place) <= IMPOSSIBLE_M);
+  return near.length > 0 ? near : places;
+}
+
+// What the map is fitted to: all aircraft that are not LOST and have a fix and a good position; the search areas, unless they
+// are far from all of them; and the geofence, if it is not much larger than these. If nothing remains, all places that are
+// known.
+function placesToFit(model, {fence}) {
   const all = (places) => places.filter((place) => place);
-  const present = all(model.aircraft.filter(isPresent(model)).map(fixOf));
-  const hasArea = area && (present.length === 0 || present.some((place) => distance(middleOf(area), place) <= OUTLIER_M));
-  const places = [...present, ...(hasArea ? corners(area) : [])];
+  const present = withoutOutliers(all(model.aircraft.filter(isPresent(model)).map(fixOf)));
+  const isNearby = (area) => present.length === 0 || present.some((place) => distance(middleOf(area), place) <= OUTLIER_M);
+  const places = [...present, ...areasToDraw(model).filter(isNearby).flatMap(corners)];
   const known = [places, all(model.aircraft.map(fixOf)), all(model.aircraft.map(placeOf))].find(({length}) => length > 0) ?? [];
   if (!fence || known.length === 0) return known;
   const around = [[1, 0], [-1, 0], [0, 1], [0, -1]].map(([north, east]) =>
@@ -85,8 +98,9 @@ export class FleetMap {
     const cell = drawGrid(painter, space);
     const [area, isDraft] = this.areaToDraw();
     drawFence(painter, this.model.snapshot?.fence);
-    drawArea(painter, this.model.snapshot?.area, false, space);
-    if (isDraft) drawArea(painter, area, true, space);
+    const areas = areasToDraw(this.model);
+    for (const one of areas) drawArea(painter, one, {isFlown: one.flown_by > 0, outcome: `${countOf(one)} fly it`}, space);
+    if (isDraft) drawArea(painter, area, {isDraft}, space);
     drawFootprints(painter, this.model);
     drawTrails(painter, this.trails.trails, this.model);
     const {targets} = this.model;
@@ -98,6 +112,7 @@ export class FleetMap {
     // For whoever watches the page by program: what is drawn cannot be read.
     const text = this.destinations.map(({node, kind, left}) => `${node} ${kind} ${wayLeft(left)}`).join(', ');
     setAttribute(byId('map'), 'data-destinations', text);
+    setAttribute(byId('map'), 'data-areas', areas.map((one) => `${one.number}: ${countOf(one)}`).join(', '));
     const size = cell >= 1000 ? `${cell / 1000} km` : `${cell} m`;
     setText(byId('legend'), `Grid ${size} · ellipses 2σ · north up${this.fenceLegend}`);
     setText(byId('off-map'), this.offMap);
@@ -127,12 +142,15 @@ export class FleetMap {
     const bounds = this.map.getBounds();
     const away = model.aircraft.filter(isPresent(model)).filter((one) => fixOf(one) && !bounds.contains(fixOf(one))).map(({node}) => node);
     const names = away.length > MOST_NAMED ? [`${away.length} aircraft`] : away;
-    const {area} = model.snapshot ?? {};
-    if (area && !bounds.intersects(corners(area))) {
+    for (const area of areasToDraw(model)) {
+      if (bounds.intersects(corners(area))) continue;
       const metres = Math.min(...model.aircraft.map(fixOf).filter((one) => one).map((place) => distance(place, middleOf(area))));
       names.push(`search area ${area.number}${Number.isFinite(metres) && metres > OUTLIER_M ? ` (${wayLeft(metres)} away)` : ''}`);
     }
-    return names.length > 0 ? `▲ Off the map: ${names.join(', ')}` : '';
+    const bad = model.aircraft.filter((one) => one.bad_position && isPresent(model)(one)).map(({node}) => node);
+    const said = names.length > 0 ? [`▲ Off the map: ${names.join(', ')}`] : [];
+    if (bad.length > 0) said.push(`▲ Bad position: ${bad.length > MOST_NAMED ? `${bad.length} aircraft` : bad.join(', ')}`);
+    return said.join(' · ');
   }
 
   get destinations() {
@@ -220,10 +238,13 @@ export class FleetMap {
     const shape = known.marker.getElement();
     for (const name of Object.keys(STATES)) shape.classList.toggle(name, name === state);
     shape.classList.toggle('selected', selected);
+    const marked = model.markedNodes.has(aircraft.node);
+    shape.classList.toggle('marked', marked);
     setAttribute(known.symbol.turned, 'transform', `rotate(${(((pose.yaw_rad ?? 0) * 180) / Math.PI).toFixed(0)})`);
     const age = model.age(pose.age_s);
-    setText(known.symbol.label,
-      state === 'up' ? aircraft.node : `${aircraft.node} ${STATES[state].word} ${ageWithUnit(age)}`);
+    const word = aircraft.bad_position && model.state(aircraft) === 'up' ? 'bad position' : state === 'up' ? '' : STATES[state].word;
+    const how = word ? `${word} ${ageWithUnit(age)}` : '';
+    setText(known.symbol.label, [aircraft.node, marked ? '✓' : '', how].filter((one) => one).join(' '));
   }
 
   fit() {

@@ -30,9 +30,10 @@ export function placeOf(aircraft) {
 
 const NO_FIX_DEG = 0.001;
 
-// Where it is, if its receiver has a fix: without one it tells 0, 0.
+// Where it is, if its receiver has a fix: without one it tells 0, 0. Null also while its position is bad: the place in the
+// snapshot is then the last good one.
 export function fixOf(aircraft) {
-  const place = placeOf(aircraft);
+  const place = aircraft?.bad_position ? null : placeOf(aircraft);
   return place && (Math.abs(place.lat) > NO_FIX_DEG || Math.abs(place.lng) > NO_FIX_DEG) ? place : null;
 }
 
@@ -41,7 +42,7 @@ export class Model {
   takenAt = -Infinity;
   connected = false;
   selected = null;
-  markedNodes = new Set();  // those that an order to several goes to
+  markedNodes = new Set();  // those that an order to several goes to; they end with it, and with a selection
   forgotten = new Set();  // LOST aircraft that a person has dismissed from this page, until they are heard again
   received = 0;
   skipped = 0;
@@ -81,7 +82,8 @@ export class Model {
     const urgency = (one) => {
       if (this.isOverReplay(one)) return URGENCY.length;
       const state = this.state(one);
-      return URGENCY.indexOf((this.isFresh(one, 'health') && batteryLevel(one.health.battery_percent)) || state);
+      const level = one.bad_position && state === 'up' ? 'warning' : state;
+      return URGENCY.indexOf((this.isFresh(one, 'health') && batteryLevel(one.health.battery_percent)) || level);
     };
     const rank = new Map(this.aircraft.map((one) => [one, urgency(one)]));
     return [...this.aircraft].sort((a, b) => rank.get(a) - rank.get(b));
@@ -99,6 +101,19 @@ export class Model {
   }
   mark(node) {
     if (!this.markedNodes.delete(node)) this.markedNodes.add(node);
+  }
+  // A selection ends the marks, unless they are kept: an order is for the aircraft that were chosen last.
+  select(node, keepsMarks = false) {
+    this.selected = node;
+    if (!keepsMarks) this.endMarks();
+  }
+  endMarks() {
+    this.markedNodes.clear();
+  }
+  // Those that a Search or a Home is for.
+  get receivers() {
+    const {marked, selectedAircraft: selected} = this;
+    return marked.length > 0 ? marked : selected ? [selected.node] : [];
   }
   get selectedAircraft() {
     return this.find(this.selected);
@@ -137,6 +152,7 @@ export class Model {
     if (!this.fleetFresh) return 'the gateway of the ground station is silent';
     if (aircraft.state === 'waiting') return '';
     const beats = aircraft.state === 'up';
+    if (beats && aircraft.bad_position) return `bad position: ${aircraft.bad_position}`;
     const poses = this.age(aircraft.pose?.age_s) <= POSE_FRESH_S;
     if (beats && poses) return '';
     if (beats) return aircraft.pose ? 'poses missing, beats arriving' : 'no pose has come yet';
