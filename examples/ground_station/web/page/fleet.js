@@ -6,10 +6,11 @@ import {batteryLevel} from './model.js';
 import {kilo} from './radio.js';
 
 const BATTERY_SIGNS = {'': '', warning: '▲ ', alarm: '■ '};
+const MOST_NAMED = 3;  // on a button
 const COLUMNS = ['name', 'state', 'age number', 'rtt number', 'delivery number', 'battery number', 'altitude number', 'speed number', 'mission'];
 
 export class FleetTable {
-  // onSelect(node), onForget(node), onMark(node).
+  // onSelect(node, keepsMarks), onForget(node), onMark(node).
   constructor(model, {onSelect, onForget, onMark}) {
     Object.assign(this, {model, onSelect, onForget, onMark});
     this.body = byId('fleet').tBodies[0];
@@ -74,7 +75,7 @@ export class FleetTable {
     // Where one thing is there and another is not, state and age would seem to contradict each other.
     const missing = model.missing(aircraft);
     setAttribute(cells[1], 'title', missing);
-    const special = /arriving/.test(missing) ? missing : aircraft.without_orders ? 'back without orders' : '';
+    const special = /^bad position/.test(missing) ? 'bad position' : /arriving/.test(missing) ? missing : aircraft.without_orders ? 'back without orders' : '';
     setText(why, [aircraft.replay ? 'replay' : '', special].filter((one) => one).join(' · '));
     setText(cells[2], pose ? `${fresh ? '' : '! '}${ageText(model.age(pose.age_s))}` : '–');
     mark(cells[2], 'age number', fresh);
@@ -94,7 +95,7 @@ export class FleetTable {
     setAttribute(cells[8], 'title', mission?.text ?? '');
   }
 
-  // Arrow keys choose an aircraft.
+  // Arrow keys choose an aircraft, with Shift they keep the marks.
   onKey(event) {
     if (event.target instanceof HTMLButtonElement) return;
     const step = {ArrowDown: 1, ArrowUp: -1}[event.key];
@@ -108,7 +109,7 @@ export class FleetTable {
     }
     if (!next) return;
     event.preventDefault();
-    this.onSelect(next);
+    this.onSelect(next, event.shiftKey);
     this.focus(next);
   }
   focus(node) {
@@ -118,13 +119,23 @@ export class FleetTable {
   }
 }
 
+// Each button says which aircraft it is for.
+function nameReceivers(name, nodes, mostNamed = MOST_NAMED) {
+  setText(byId(`act-${name}-who`), nodes.length > mostNamed ? `${nodes.length} aircraft` : nodes.join(', '));
+  setAttribute(byId(`act-${name}`), 'title', nodes.join(', '));
+}
+
 export function showSelected(model) {
   const aircraft = model.selectedAircraft;
   const known = aircraft !== null;
   const {marked} = model;
   for (const name of ['goto', 'centre']) byId(`act-${name}`).disabled = !known;
   for (const name of ['search', 'home']) byId(`act-${name}`).disabled = !known && marked.length === 0;
-  byId('act-all-home').disabled = model.thoseWithAMission.length === 0;
+  const all = model.thoseWithAMission.map(({node}) => node);
+  byId('act-all-home').disabled = all.length === 0;
+  nameReceivers('goto', known ? [aircraft.node] : []);
+  for (const name of ['search', 'home']) nameReceivers(name, model.receivers);
+  nameReceivers('all-home', all, 0);
   setText(byId('marked-text'), marked.length > 0 ? `✓ Search and Home are for those that are marked: ${marked.join(', ')}.` : '');
   if (!known) {
     setText(byId('selected-title'), 'No aircraft selected');

@@ -18,8 +18,10 @@ const MOST_REPLAYED = 6;  // named in the bar
 
 const model = new Model();
 const say = (text) => setText(byId('live'), text);
-const select = (node) => {
-  model.selected = node;
+const select = (node, keepsMarks = false) => {
+  const ended = keepsMarks ? [] : model.marked;
+  model.select(node, keepsMarks);
+  if (ended.length > 0) say(`${node} is selected. Not marked any more: ${ended.join(', ')}.`);
   show(false);
 };
 
@@ -28,7 +30,7 @@ const map = new FleetMap(model, {
     if (model.selectedAircraft) orders.open('goto', point.wrap());
     else say('Select an aircraft first.');
   },
-  onSelect: select,
+  onSelect: (node) => select(node),
 });
 const connection = new Connection(receive, (connected) => {
   model.connected = connected;
@@ -52,7 +54,7 @@ const table = new FleetTable(model, {
 });
 const orders = new Orders(model, connection, map, say);
 const area = new SearchAreaEditor(model, connection, map, say);
-const lists = [new CommandList(model), new TargetList(model), new RadioPanel(model), new ProblemList(model), new EventList(model, say), new Pictures(model, select)];
+const lists = [new CommandList(model), new TargetList(model), new RadioPanel(model), new ProblemList(model), new EventList(model, say), new Pictures(model, (node) => select(node))];
 
 // What handling takes, for the line at the top: snapshots since the last look, and the longest one.
 const measured = {since: performance.now(), received: 0, skipped: 0, longestMs: 0, text: ''};
@@ -150,12 +152,12 @@ function nextTheme() {
   window.rabitTheme.next();
   showTheme();
 }
-const step = (by) => {
+const step = (by, keepsMarks = false) => {
   const names = model.byUrgency.map((one) => one.node);
   if (names.length === 0) return;
   const at = names.indexOf(model.selected);
   const next = names[at < 0 ? 0 : (at + by + names.length) % names.length];
-  select(next);
+  select(next, keepsMarks);
   table.focus(next);
 };
 const help = () => byId('keys').showModal();
@@ -165,10 +167,12 @@ const centre = () => map.centre(model.selectedAircraft);
 listenForKeys([
   {key: 'j', what: 'Select the next aircraft', run: () => step(1)},
   {key: 'k', what: 'Select the one before', run: () => step(-1)},
+  {key: 'J', what: 'Select the next aircraft, and keep the marks', run: () => step(1, true)},
+  {key: 'K', what: 'Select the one before, and keep the marks', run: () => step(-1, true)},
   {key: 'g', what: 'Send the selected aircraft to a point', run: () => orders.open('goto')},
   {key: 's', what: 'Let it search', run: () => orders.open('search')},
   {key: 'h', what: 'Call it home', run: () => orders.open('home')},
-  {key: 'x', what: 'Mark it, or unmark it: Search and Home are for all that are marked', run: () => mark(model.selected)},
+  {key: 'x', what: 'Mark it, or unmark it: Search and Home are for all that are marked. An order and a selection end the marks', run: () => mark(model.selected)},
   {key: 'H', what: 'Call all aircraft home', run: allHome},
   {key: 'c', what: 'Centre the map on it', run: centre},
   {key: 'f', what: 'Fit the map to the fleet and the search area', run: () => map.fit()},

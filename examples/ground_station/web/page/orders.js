@@ -5,7 +5,7 @@ import {fixed, isNumber, STATES} from './format.js';
 import {askedOfDistance} from './far.js';
 import {outsideOf} from './fence.js';
 import {describeHeight, knownGround} from './heights.js';
-import {placeOf} from './model.js';
+import {fixOf, placeOf} from './model.js';
 
 const DEFAULT_SPEED_MPS = 12;
 const MOST_NAMED = 4;  // in a title
@@ -61,8 +61,7 @@ export class Orders {
   // them those that are marked, or the selected one. A Goto is for the selected one alone: two do not fit at one point.
   open(kind, point = null, nodes = null) {
     const aircraft = this.model.selectedAircraft;
-    const wanted = nodes ?? (kind === 'goto' ? [] : this.model.marked);
-    const receivers = wanted.length > 0 ? wanted : aircraft ? [aircraft.node] : [];
+    const receivers = nodes ?? (kind !== 'goto' ? this.model.receivers : aircraft ? [aircraft.node] : []);
     if (receivers.length === 0) {
       this.say('Select an aircraft first.');
       return;
@@ -165,7 +164,7 @@ export class Orders {
     setText(byId('order-title'), titles[this.kind]);
     const again = this.askedAbout !== null;
     byId('order-send').disabled = !live || this.sending === true;
-    setText(byId('order-send'), again ? 'Send it all the same' : {goto: 'Send', home: 'Call home', search: 'Start search'}[this.kind]);
+    setText(byId('order-send'), again ? 'Send it all the same' : {goto: `Send ${this.who}`, home: `Call ${this.who} home`, search: `Let ${this.who} search`}[this.kind]);
     byId('order-send').classList.toggle('danger', again);
     setText(byId('order-again'), again ? `▲ ${this.askedAbout} Is it meant so?` : '');
     if (!live) {
@@ -185,7 +184,8 @@ export class Orders {
     said.unshift(...this.doubtful);
     const dismissed = this.nodes.filter((node) => this.model.forgotten.has(node));
     if (dismissed.length > 0) said.push(`Also for what was dismissed from the list: ${dismissed.join(', ')}.`);
-    const from = placeOf(aircraft);
+    if (this.nodes.length > MOST_NAMED) said.push(`For ${this.nodes.join(', ')}.`);
+    const from = fixOf(aircraft);
     if (this.kind === 'goto' && this.point && from) {
       said.push(`${Math.round(distance(from, this.point))} m from where it is${state === 'up' ? '' : ' said to have been'}.`);
     }
@@ -242,6 +242,7 @@ export class Orders {
         throw new Error(failed.map(what).join('; '));
       }
       this.say(`${kind} for ${nodes.join(', ')} was given to the ground station.`);
+      this.model.endMarks();
       this.close(hadFocus);
     } catch (error) {
       setText(byId('order-error'), error.message);

@@ -58,7 +58,7 @@ async function commandsAnAircraft(programs) {
   await page.evaluate(() => {
     window.progress = [];
     new MutationObserver(() => {
-      const item = document.querySelector('#commands li:last-child');
+      const item = [...document.querySelectorAll('#commands li[data-command]')].at(-1);
       const now = item?.dataset.progress;
       if (now && window.progress[window.progress.length - 1] !== now) window.progress.push(now);
     }).observe(document.getElementById('commands'), {subtree: true, childList: true, attributes: true});
@@ -67,7 +67,7 @@ async function commandsAnAircraft(programs) {
   await page.mouse.click(marker.x + 40, marker.y - 30);
   assert.equal(await page.isVisible('#order'), true);
   const point = [Number(await page.inputValue('#order-latitude')), Number(await page.inputValue('#order-longitude'))];
-  assert.equal(await page.locator('#commands li').count(), 0, 'nothing is sent before it is confirmed');
+  assert.equal(await page.locator('#commands li[data-command]').count(), 0, 'nothing is sent before it is confirmed');
   await page.fill('#order-speed', '20');
   await page.click('#order-send');
   await becomes(async () => (await page.locator('#commands li[data-progress="done"]').count()) === 1,
@@ -82,8 +82,8 @@ async function commandsAnAircraft(programs) {
   await page.keyboard.press('Escape');
   await page.keyboard.press('h');
   await page.keyboard.press('Enter');
-  await becomes(async () => (await page.locator('#commands li').count()) === 2, 'there is a second command');
-  await becomes(async () => /(accepted|done)/.test(await page.locator('#commands li').first().getAttribute('data-progress')),
+  await becomes(async () => (await page.locator('#commands li[data-command]').count()) === 2, 'there is a second command');
+  await becomes(async () => /(accepted|done)/.test(await page.locator('#commands li[data-command]').first().getAttribute('data-progress')),
     async () => `it is called home; ${await fleet.text('#commands')}`);
   // An open page does not keep the ground station from ending in order.
   // Its verdict on the flight is no matter of the page: a flight of four seconds has too few poses to judge.
@@ -107,17 +107,18 @@ async function declinesWhatIsTooLow(programs) {
   await page.click('#order-send');
   await page.click('#order-send');
   const why = '50 m above sea level is 380 m below the ground and below the floor of 460 m';
-  await becomes(async () => (await fleet.text('#commands li')).includes(`declined: ${why}`), async () => `it is declined: ${await fleet.text('#commands')}`);
+  await becomes(async () => (await fleet.text('#commands li[data-command]')).includes(`declined: ${why}`), async () => `it is declined: ${await fleet.text('#commands')}`);
   await page.keyboard.press('a');
   await page.fill('#area-altitude_m', '100');
   await page.click('#area-send');
   await page.click('#area-send');
   const whyNot = '100 m above sea level is 330 m below the ground and below the floor of 460 m';
   await becomes(async () => (await fleet.text('#events')).includes(`declines the search area: ${whyNot}`), async () => `so is the area: ${await fleet.text('#events')}`);
+  await becomes(async () => (await fleet.text('#commands li[data-area="2"]')).includes(`0 of 1 fly area 2; declined by uav1: ${whyNot}; flying area 1`), async () => `and its outcome is in the list: ${await fleet.text('#commands')}`);
   await page.keyboard.press('Escape');
   await page.keyboard.press('s');
   await page.keyboard.press('Enter');
-  await becomes(async () => (await fleet.text('#commands li')).includes(`declined: search area: ${whyNot}`), 'it does not search another area than the one that was sent');
+  await becomes(async () => (await fleet.text('#commands li[data-command]')).includes(`declined: search area: ${whyNot}`), 'it does not search another area than the one that was sent');
   assert.deepEqual(fleet.errors, []);
 }
 
@@ -137,7 +138,7 @@ async function leavesAnAircraftThatIsBackToThePerson(programs) {
   startUav(1);
   await becomes(async () => /uav1.*is back without orders/.test(await fleet.text('#events')), async () => `an event says so: ${await fleet.text('#events')}`);
   await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && /IDLE/.test(row.mission) && /back without orders/.test(row.mission), 'waits');
-  assert.equal(await page.locator('#commands li').count(), 2, 'nothing was sent to it');
+  assert.equal(await page.locator('#commands li[data-command]').count(), 2, 'nothing was sent to it');
   assert.deepEqual(fleet.errors, []);
 }
 

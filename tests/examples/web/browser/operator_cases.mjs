@@ -44,7 +44,7 @@ async function asksAgainBeforeALargeDescent(programs) {
   await page.keyboard.press('a');
   assert.match(await page.textContent('#area label:has(#area-altitude_m)'), /above sea level/);
   await page.fill('#area-altitude_m', '100');
-  await becomes(async () => /100 m above sea level: 410 m lower than the area in force, 330 m BELOW the ground/.test(await fleet.text('#area-note')), async () => `the note says it: ${await fleet.text('#area-note')}`);
+  await becomes(async () => /100 m above sea level: 410 m lower than the wanted area, 330 m BELOW the ground/.test(await fleet.text('#area-note')), async () => `the note says it: ${await fleet.text('#area-note')}`);
   assert.match(await fleet.text('#area-note'), /▲ Below the floor of uav1, uav2, uav3 \(460 m\): it will be declined\./);
   await page.click('#area-send');
   assert.match(await fleet.text('#area-again'), /a descent of 410 m.*Is it meant so\?/);
@@ -142,7 +142,7 @@ async function keepsADestinationOnTheMapUntilItIsDone(programs) {
     const events = await fleet.text('#events');
     return ['delivered', 'accepted', 'done'].every((step) => events.includes(`command 1 (goto) ${step}`));
   }, 'every step is an event');
-  assert.match(await fleet.text('#commands li:last-child'), /^1uav1goto/);
+  assert.match(await page.locator('#commands li[data-command]').last().textContent(), /^1uav1goto/);
   assert.deepEqual(fleet.errors, []);
 }
 
@@ -309,7 +309,7 @@ async function asksAgainIfThePositionIsNotKnown(programs) {
   const {page} = fleet;
   await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && !row.old, 'is UP');
   fixture.tell('noplace uav1');
-  await becomes(async () => (await fleet.marker('uav1')) === null, 'its place is not known');
+  await becomes(async () => /bad position/.test((await fleet.marker('uav1')).label), 'its place is not known any more');
   await fleet.select('uav1');
   await page.click('#act-goto');
   await page.fill('#order-latitude', '47.43');
@@ -436,28 +436,97 @@ async function ordersSeveralAircraftAtOnce(programs) {
   assert.doesNotMatch(fixture.output, /order/, 'nothing is sent before it is confirmed');
   await page.keyboard.press('Enter');
   for (const node of ['uav1', 'uav2', 'uav3']) await fixture.says(new RegExp(`order 1 ${node} `), `${node} is called home`);
-  await becomes(async () => (await page.locator('#commands li').count()) === 3, 'each has a command of its own');
+  await becomes(async () => (await page.locator('#commands li[data-command]').count()) === 3, 'each has a command of its own');
   fixture.tell('progress 4 the battery is low');
-  await becomes(async () => /uav\d.*declined: the battery is low/.test(await fleet.text('#commands li')), 'with an outcome of its own');
+  await becomes(async () => /uav\d.*declined: the battery is low/.test(await fleet.text('#commands li[data-command]')), 'with an outcome of its own');
 
+  assert.equal(await fleet.text('#act-all-home-who'), '3 aircraft');
   // Some of them: marked by a key, and by Ctrl and a click.
   await fleet.select('uav1');
   await page.keyboard.press('x');
   await page.locator('#fleet tbody tr', {hasText: 'uav3'}).first().click({modifiers: ['Control']});
   assert.match(await fleet.text('#marked-text'), /marked: uav1, uav3\.$/);
   assert.match(await page.getAttribute('#fleet tbody tr:nth-child(3)', 'class'), /\bmarked\b/);
+  assert.equal(await fleet.text('#act-home-who'), 'uav1, uav3', 'the button says for which');
+  assert.match((await fleet.marker('uav3')).classes, /\bmarked\b/, 'and so does the map');
   await page.keyboard.press('s');
   assert.equal(await fleet.text('#order-title'), 'Let uav1, uav3 search?');
+  assert.equal(await fleet.text('#order-send'), 'Let uav1, uav3 search');
   await page.click('#order-send');
   for (const node of ['uav1', 'uav3']) await fixture.says(new RegExp(`order 2 ${node} `), `${node} is told to search`);
-  await becomes(async () => (await page.locator('#commands li').count()) === 5, 'and no other');
+  await becomes(async () => (await page.locator('#commands li[data-command]').count()) === 5, 'and no other');
+  await becomes(async () => (await fleet.text('#marked-text')) === '', 'the marks end with the order');
+  assert.doesNotMatch((await fleet.marker('uav3')).classes, /\bmarked\b/);
+  assert.equal(await fleet.text('#act-home-who'), 'uav1', 'the next one is for the selected one');
   // A point is for one.
   await page.keyboard.press('g');
   assert.equal(await fleet.text('#order-title'), 'Send uav1 to a point');
   await page.keyboard.press('Escape');
+  // A selection ends the marks: what follows is for the aircraft that was chosen last.
+  await page.keyboard.press('x');
+  await page.keyboard.press('J');
+  await page.keyboard.press('x');
+  assert.match(await fleet.text('#marked-text'), /marked: uav1, uav2\.$/, 'with Shift the marks are kept');
+  await fleet.select('uav3');
+  assert.equal(await fleet.text('#marked-text'), '');
+  await page.keyboard.press('h');
+  assert.equal(await fleet.text('#order-title'), 'Call uav3 home?');
+  await page.keyboard.press('Escape');
+  // A second mark takes the first one back.
   await page.keyboard.press('x');
   await page.locator('#fleet tbody tr', {hasText: 'uav3'}).first().click({modifiers: ['Control']});
   assert.equal(await fleet.text('#marked-text'), '');
+  assert.deepEqual(fleet.errors, []);
+}
+
+// An area that all aircraft decline is not in force, whatever was sent.
+async function tellsHowManyFlyTheSearchArea(programs) {
+  const {fixture, url} = await startFixture(programs, 3);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  const areas = () => page.getAttribute('#map', 'data-areas');
+  await becomes(async () => (await areas()) === '1: 3 of 3', async () => `all fly the first area: ${await areas()}`);
+  for (const node of ['uav1', 'uav2', 'uav3']) fixture.tell(`decline ${node} 60 m outside of the geofence`);
+  await becomes(async () => /uav3.*declines the search area/.test(await fleet.text('#events')), 'they decline what comes');
+  await page.keyboard.press('a');
+  await page.fill('#area-north_m', '300');
+  await page.click('#area-send');
+  await fixture.says(/area \S+ \S+ 300 600/);
+  const item = () => fleet.text('#commands li[data-area="2"] .what');
+  const outcome = '▲ 0 of 3 fly area 2; declined by uav1, uav2, uav3: 60 m outside of the geofence; flying area 1';
+  await becomes(async () => (await page.locator('#commands li[data-area="2"]').count()) === 1 && (await item()) === outcome, 'the list has its outcome');
+  await becomes(async () => (await areas()) === '1: 3 of 3, 2: 0 of 3', async () => `both areas are on the map: ${await areas()}`);
+  await becomes(async () => /0 of 3 fly area 2; declined by uav1, uav2, uav3/.test(await fleet.text('#events')), 'an event says it');
+  assert.doesNotMatch(await fleet.text('#events'), /is in force/);
+  assert.match(await fleet.text('#area-summary'), /^2: 300 × 600 m at 510 m, 0 of 3 fly it$/);
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function keepsTheMapUsableWithABadPosition(programs) {
+  const {fixture, url} = await startFixture(programs, 3);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await fleet.rowBecomes('uav2', (row) => /UP/.test(row.state) && !row.old, 'is UP');
+  fixture.tell('badplace uav2');
+  await fleet.rowBecomes('uav2', (row) => /bad position/.test(row.mission) && row.old, 'has a bad position');
+  await becomes(async () => /uav2.*bad position: latitude must be from -90 to 90, not 95/.test(await fleet.text('#events')), 'an event says it');
+  await becomes(async () => /▲ Bad position: uav2/.test(await fleet.text('#off-map')), 'the map says it');
+  assert.match((await fleet.marker('uav2')).label, /^uav2 bad position/, 'its marker stays at its last good position');
+  await page.keyboard.press('f');
+  assert.equal(await onTheMap(fleet, ['uav1', 'uav3']), 'uav1,uav3');
+  assert.match(await fleet.text('.leaflet-control-scale-line'), /^\d+ m$/, 'the map is not widened');
+  fixture.tell('goodplace uav2');
+  await fleet.rowBecomes('uav2', (row) => !/bad position/.test(row.mission) && !row.old, 'is good again');
+  await becomes(async () => /uav2.*has a good position again/.test(await fleet.text('#events')), 'an event says that, too');
+  // One that was never anywhere else: nobody knows that it is wrong, but no aircraft gets there.
+  const outliers = await page.evaluate(async () => {
+    const {withoutOutliers} = await import('/map.js');
+    const near = [{lat: 47.4, lng: 8.5}, {lat: 47.41, lng: 8.5}];
+    return [withoutOutliers([...near, {lat: 85, lng: 8.5}]).length, withoutOutliers([near[0], {lat: 85, lng: 8.5}]).length];
+  });
+  assert.deepEqual(outliers, [2, 2], 'of two nobody knows which one is wrong');
   assert.deepEqual(fleet.errors, []);
 }
 
@@ -503,7 +572,7 @@ async function asksAgainBeforeAFarSearchArea(programs) {
   await page.keyboard.press('a');
   assert.match(await fleet.text('#area-note'), /80 m above the ground, which is at 430 m/);
   await page.fill('#area-latitude_deg', '17.3977');
-  assert.match(await fleet.text('#area-note'), /510 m above sea level: as high as the area in force, the height of the ground is not known there\./);
+  assert.match(await fleet.text('#area-note'), /510 m above sea level: as high as the wanted area, the height of the ground is not known there\./);
   await page.click('#area-send');
   assert.match(await fleet.text('#area-again'), /The area is 3336 km away from uav1, uav2, uav3\. Is it meant so\?/);
   assert.doesNotMatch(fixture.output, /area/, 'nothing is sent before it is confirmed');
@@ -639,6 +708,8 @@ export const cases = {
   marks_a_target_that_nobody_sees: marksATargetThatNobodySees,
   drops_orders_that_died_with_the_aircraft: dropsOrdersThatDiedWithTheAircraft,
   orders_several_aircraft_at_once: ordersSeveralAircraftAtOnce,
+  tells_how_many_fly_the_search_area: tellsHowManyFlyTheSearchArea,
+  keeps_the_map_usable_with_a_bad_position: keepsTheMapUsableWithABadPosition,
   asks_again_outside_of_the_geofence: asksAgainOutsideOfTheGeofence,
   asks_again_before_a_large_descent: asksAgainBeforeALargeDescent,
   tells_what_is_declined_and_who_is_back_without_orders: tellsWhatIsDeclinedAndWhoIsBackWithoutOrders,
