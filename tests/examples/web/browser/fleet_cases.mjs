@@ -108,6 +108,9 @@ async function declinesWhatIsTooLow(programs) {
   await page.click('#order-send');
   const why = '50 m above sea level is 380 m below the ground and below the floor of 460 m';
   await becomes(async () => (await fleet.text('#commands li[data-command]')).includes(`declined: ${why}`), async () => `it is declined: ${await fleet.text('#commands')}`);
+  // The first area comes a while after the aircraft.
+  await becomes(async () => (await page.locator('#commands li[data-area="1"]', {hasText: '1 of 1 fly area 1'}).count()) === 1,
+    async () => `the first area is flown: ${await fleet.text('#commands')}`);
   await page.keyboard.press('a');
   await page.fill('#area-altitude_m', '100');
   await page.click('#area-send');
