@@ -81,12 +81,12 @@ std::string Describe(const std::vector<HostNetwork> &networks)
     return text.empty() ? "none" : text;
 }
 
-std::vector<HostNetwork> ListHostNetworks()
+std::optional<std::vector<HostNetwork>> ListHostNetworks()
 {
     ifaddrs *head = nullptr;
     if (getifaddrs(&head) != 0)
     {
-        return {};
+        return std::nullopt;
     }
     const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> list(head, &freeifaddrs);
     std::vector<HostNetwork> networks;

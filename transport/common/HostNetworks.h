@@ -40,7 +40,8 @@ std::string Describe(const HostNetwork &network);
 // All of them, separated by commas; `none` if there is none.
 std::string Describe(const std::vector<HostNetwork> &networks);
 
-// The networks of this host now, in the order of their interfaces. Empty if they cannot be listed.
-std::vector<HostNetwork> ListHostNetworks();
+// The networks of this host now, in the order of their interfaces. nullopt: they cannot be listed now, as
+// without a free descriptor; there may be some.
+std::optional<std::vector<HostNetwork>> ListHostNetworks();
 
 }  // namespace Rabit

@@ -21,6 +21,8 @@ using std::chrono::milliseconds;
 // Interval of looks for changes that the kernel does not report: addresses of peers without one, and
 // addresses that peers announce.
 constexpr milliseconds PeerPeriod{500};
+// Until networks that could not be listed are listed again. The kernel does not report that they can.
+constexpr milliseconds ListPeriod{1000};
 
 const TransportSettings &Checked(const TransportSettings &settings)
 {
@@ -66,6 +68,11 @@ std::vector<std::string> ResolvePeers(
     return resolved;
 }
 
+SettingsProblem CannotList()
+{
+    return {"interfaces", "", "the networks of this host cannot be listed; trying again", false};
+}
+
 std::vector<std::string> NamesToLookUp(const TransportSettings &settings)
 {
     std::vector<std::string> names;
@@ -91,14 +98,14 @@ RejoiningSession::RejoiningSession(const TransportSettings &settings, PeerHandle
       _shared(std::make_shared<RejoiningShared>(settings)),
       _peerGate(_shared->Log, "peer events")
 {
-    const Current current = See({});
-    if (current.Usable.empty() && !_hasOwnNetworks)
+    const std::optional<Current> current = See({});
+    if (!current || (current->Usable.empty() && !_hasOwnNetworks))
     {
         _backend->CheckConfig(_settings);
         return;
     }
     const std::lock_guard lock(_shared->Structure);
-    Open(current);
+    Open(*current);
 }
 
 RejoiningSession::~RejoiningSession()
@@ -155,7 +162,12 @@ std::vector<SettingsProblem> RejoiningSession::NetworkProblems() const
 std::optional<milliseconds> RejoiningSession::Look()
 {
     const auto peers = PeerPlaces();
-    const Current current = See(peers);
+    const std::optional<Current> seen = See(peers);
+    if (!seen)
+    {
+        return ListPeriod;
+    }
+    const Current &current = *seen;
     const auto now = _host.Now();
     const auto verdict =
         _decision.Look(now, {current.Host, current.Usable, peers, current.Settings.Peers != _openedPeers});
@@ -199,10 +211,17 @@ void RejoiningSession::LeaveOutDuplicates(const std::vector<PeerPlace> &peers, N
                   });
 }
 
-RejoiningSession::Current RejoiningSession::See(const std::vector<PeerPlace> &peers)
+std::optional<RejoiningSession::Current> RejoiningSession::See(const std::vector<PeerPlace> &peers)
 {
+    auto networks = _host.Networks();
+    if (!networks)
+    {
+        const std::lock_guard lock(_mutex);
+        _problems = {CannotList()};
+        return std::nullopt;
+    }
     Current current;
-    current.Host = _host.Networks();
+    current.Host = std::move(*networks);
     auto choice = Choose(current.Host, _settings, _hasOwnNetworks, *_backend);
     if (_backend->IsMisledByDuplicates() && !_hasOwnNetworks)
     {
@@ -363,7 +382,14 @@ std::vector<SettingsProblem> CheckRejoining(const TransportSettings &settings,
     {
         return problems;  // problems of the networks would only hide these
     }
-    problems = Choose(ListHostNetworks(), settings, backend.HasOwnNetworks(settings), backend).Problems;
+    if (const auto networks = ListHostNetworks())
+    {
+        problems = Choose(*networks, settings, backend.HasOwnNetworks(settings), backend).Problems;
+    }
+    else
+    {
+        problems.push_back(CannotList());
+    }
     const PeerResolver resolver(NamesToLookUp(settings));
     ResolvePeers(
         settings.Peers, [&](const std::string &name) { return resolver.AddressOf(name); }, problems);

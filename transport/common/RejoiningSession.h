@@ -36,7 +36,8 @@ public:
     // Access to the host. Called on the thread that calls Look(); the functions must outlive the session.
     struct Host
     {
-        std::function<std::vector<HostNetwork>()> Networks;
+        // nullopt: they cannot be listed now.
+        std::function<std::optional<std::vector<HostNetwork>>()> Networks;
         std::function<std::chrono::steady_clock::time_point()> Now;
         // Returns the address of a peer's name, if it is known now.
         std::function<std::optional<std::string>(const std::string &name)> AddressOf;
@@ -81,7 +82,8 @@ private:
     };
 
     // Lists the present networks and peers; NetworkProblems reports the missing ones from then on.
-    Current See(const std::vector<PeerPlace> &peers);
+    // nullopt: the networks cannot be listed now, which NetworkProblems reports.
+    std::optional<Current> See(const std::vector<PeerPlace> &peers);
     void LeaveOutDuplicates(const std::vector<PeerPlace> &peers, NetworkChoice &choice);
     std::vector<PeerPlace> PeerPlaces() const;
     void OnPeer(const PeerEvent &event);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "../../NoDescriptors.h"
 #include "Networks.h"
 #include "common/DuplicateAddresses.h"
 #include "common/NetworkChoice.h"
@@ -117,7 +118,9 @@ TEST(NetworkChoice, SaysByNameWhatIsTooMany)
 
 TEST(HostNetworks, LoopbackIsListedWithItsMask)
 {
-    const auto networks = ListHostNetworks();
+    const auto listed = ListHostNetworks();
+    ASSERT_TRUE(listed);
+    const std::vector<HostNetwork> &networks = *listed;
     const auto loopback = std::find_if(networks.begin(), networks.end(),
                                        [](const HostNetwork &network) { return network.IsCalled("lo"); });
     ASSERT_NE(loopback, networks.end());
@@ -127,6 +130,12 @@ TEST(HostNetworks, LoopbackIsListedWithItsMask)
     EXPECT_TRUE(loopback->Contains("127.1.2.3"));
     EXPECT_FALSE(loopback->Contains("10.0.0.1"));
     EXPECT_FALSE(loopback->Contains("ground"));
+}
+
+TEST(HostNetworks, ThatCannotBeListedAreNotNone)
+{
+    const NoDescriptors none;
+    EXPECT_FALSE(ListHostNetworks());
 }
 
 TEST(DuplicateAddresses, AnAddressThatAPeerOnAnotherNetworkHasTooIsOne)

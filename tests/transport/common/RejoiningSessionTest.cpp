@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -186,7 +187,8 @@ protected:
         return std::make_unique<RejoiningSession>(
             _settings, [this](const PeerEvent &event) { _events.push_back(event); },
             std::make_shared<ScriptedBackend>(_script),
-            RejoiningSession::Host{[this] { return _networks; }, [this] { return _now; },
+            RejoiningSession::Host{[this] { return _canList ? std::optional(_networks) : std::nullopt; },
+                                   [this] { return _now; },
                                    [this](const std::string &name)
                                    {
                                        const auto found = _names.find(name);
@@ -220,6 +222,7 @@ protected:
     Script _script;
     TransportSettings _settings;
     std::vector<HostNetwork> _networks{Wired};
+    bool _canList = true;  // the networks
     std::map<std::string, std::string> _names;
     std::chrono::steady_clock::time_point _now{1000h};
     std::vector<PeerEvent> _events;
@@ -233,6 +236,24 @@ TEST_F(RejoiningSessionTest, OpensWithTheAddressesThatAreThere)
     const auto session = Open();
     ASSERT_EQ(_script.Opened.size(), 1u);
     EXPECT_THAT(_script.Opened[0].Interfaces, ElementsAre("10.0.0.1", "10.1.0.1"));
+}
+
+// As without a free descriptor. The kernel reports no change when they can be listed again.
+TEST_F(RejoiningSessionTest, LooksAgainForNetworksThatCannotBeListed)
+{
+    _canList = false;
+    const auto session = Open();
+    EXPECT_THAT(_script.Opened, IsEmpty());
+    ASSERT_EQ(session->NetworkProblems().size(), 1u);
+    EXPECT_THAT(session->NetworkProblems()[0].Text, HasSubstr("cannot be listed"));
+    EXPECT_EQ(session->Look(), 1000ms);
+    _canList = true;
+    Follow(*session);
+    ASSERT_EQ(_script.Opened.size(), 1u);
+    EXPECT_THAT(session->NetworkProblems(), IsEmpty());
+    _canList = false;
+    EXPECT_EQ(session->Look(), 1000ms) << "it goes on with its networks";
+    EXPECT_TRUE(_script.IsOpen);
 }
 
 TEST_F(RejoiningSessionTest, LeavesTheChoiceToABackendThatFindsNetworksUnlessTheyAreNamed)

@@ -53,7 +53,7 @@ private:
     static void CheckDomainConfig(TransportSettings settings)
     {
         HasOwnInterfaces(settings.BackendConfig);
-        const auto host = ListHostNetworks();
+        const auto host = ListHostNetworks().value_or(std::vector<HostNetwork>());
         const auto network = std::find_if(
             host.begin(), host.end(), [](const HostNetwork &one) { return one.Up && !one.Address.empty(); });
         if (network == host.end())

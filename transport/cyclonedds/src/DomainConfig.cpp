@@ -55,7 +55,7 @@ void AddInterfaces(const TransportSettings &settings, std::ostream &xml)
 // True if a peer is on none of our networks.
 bool IsRoutingNeeded(const TransportSettings &settings)
 {
-    const auto host = ListHostNetworks();
+    const auto host = ListHostNetworks().value_or(std::vector<HostNetwork>());
     const auto isHere = [&](const std::string &peer)
     {
         return std::any_of(host.begin(), host.end(),

@@ -145,7 +145,8 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? guarded.Meeting : nullptr;
     guarded.Authentication = guarded.Mode == RtpsGuard::Mode::Protected ? guarded.Authentication : nullptr;
     guarded.HasPeers = !settings.Peers.empty();
-    guarded.Networks = OwnNetworks(settings.Interfaces, ListHostNetworks());
+    guarded.Networks =
+        OwnNetworks(settings.Interfaces, ListHostNetworks().value_or(std::vector<HostNetwork>()));
     guarded.AnnouncementPeriod = settings.AnnouncementPeriod;
     // GuardedUdp requests the first announcements after the very first, at doubling intervals.
     attributes.builtin.discovery_config.initial_announcements.count = 0;
