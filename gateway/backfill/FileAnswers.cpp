@@ -40,6 +40,12 @@ bool IsPlainName(const std::string &name)
            name.find('\0') == std::string::npos;
 }
 
+// True if open() failed with `error` since there is no such file: nothing of that name, or a link or socket.
+bool IsAbsent(int error)
+{
+    return error == ENOENT || error == ENOTDIR || error == ELOOP || error == ENXIO || error == ENAMETOOLONG;
+}
+
 }  // namespace
 
 std::optional<Answer> FileAnswers::Of(const std::string &node, const Question &question)
@@ -59,12 +65,19 @@ std::optional<Answer> FileAnswers::Of(const std::string &node, const Question &q
     }
     const Descriptor folder(::open(_folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
     // A pipe would block without O_NONBLOCK.
-    const Descriptor file(
-        ::openat(folder.Number(), question.name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    const Descriptor file(folder.Number() < 0 ? -1
+                                              : ::openat(folder.Number(), question.name.c_str(),
+                                                         O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
     struct stat status
     {
     };
-    if (file.Number() < 0 || ::fstat(file.Number(), &status) != 0 || !S_ISREG(status.st_mode))
+    const bool isOpen = file.Number() >= 0 && ::fstat(file.Number(), &status) == 0;
+    if (!isOpen && !IsAbsent(errno))
+    {
+        answer.result = Result::FAILED;
+        return answer;
+    }
+    if (!isOpen || !S_ISREG(status.st_mode))
     {
         _facts.erase(question.name);
         return answer;

@@ -18,7 +18,8 @@ namespace Rabit::Backfill
 {
 
 // Answers questions about the files of one folder. Only regular files in it are sent: a name with a slash, a
-// symbolic link, a device and a folder are UNKNOWN, as is a file that is not there. Not thread-safe.
+// symbolic link, a device and a folder are UNKNOWN, as is a file that is not there. A file that cannot be
+// opened FAILED. Not thread-safe.
 class FileAnswers
 {
 public:

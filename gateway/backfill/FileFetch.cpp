@@ -92,6 +92,14 @@ std::span<const std::uint8_t> FileFetch::Answered(const Answer &answer, Duration
         _asked.erase(asked);
         _patientUntil = now + Patience;
     }
+    if (isAsked && answer.kind == Kind::PART && answer.size <= answer.from &&
+        (answer.result == Result::OK || answer.result == Result::FAILED))
+    {
+        // The file has become shorter, or cannot be opened now: the node is asked anew what it has.
+        _facts.reset();
+        AskAgain(now + Pause);
+        return {};
+    }
     if (isAsked && answer.result != Result::OK)
     {
         _refusal = answer.result == Result::NOT_ALLOWED
@@ -117,7 +125,7 @@ std::span<const std::uint8_t> FileFetch::Answered(const Answer &answer, Duration
     _refusal.clear();
     if (isAsked && answer.bytes.empty())
     {
-        AskAgain(now + Pause);  // the file has become shorter
+        AskAgain(now + Pause);  // an answer has at least one byte
     }
     // The answer to a question of an earlier incarnation is as good: in the end the hash tells.
     if (answer.from != _have || answer.bytes.size() > _facts->Size - _have)

@@ -11,6 +11,8 @@
 #include <fstream>
 #include <memory>
 
+#include "../../NoDescriptors.h"
+
 namespace Rabit::Backfill
 {
 namespace
@@ -209,6 +211,18 @@ TEST_F(FileAnswersTest, OnlyNamedNodesMayFetch)
 {
     EXPECT_EQ(Ask("a.txt", Kind::FACTS, 0, 0, "uav2").result, Result::NOT_ALLOWED);
     EXPECT_EQ(Ask("a.txt", Kind::PART, 0, 5, "uav2").result, Result::NOT_ALLOWED);
+}
+
+// Neither the folder, nor the file in it.
+TEST_F(FileAnswersTest, AFileThatCannotBeOpenedNowIsNotSaidToBeMissing)
+{
+    for (const unsigned spare : {0U, 1U})
+    {
+        const NoDescriptors none(spare);
+        EXPECT_EQ(Ask("a.txt").result, Result::FAILED);
+        EXPECT_EQ(Ask("a.txt", Kind::PART).result, Result::FAILED);
+    }
+    EXPECT_EQ(Ask("a.txt").result, Result::OK);
 }
 
 TEST_F(FileAnswersTest, WithoutItsFolderThereIsNoFile)

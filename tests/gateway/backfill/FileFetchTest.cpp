@@ -88,6 +88,32 @@ TEST(FileFetchTest, AFileThatBecameShorterIsFetchedFromItsBeginning)
     EXPECT_EQ(fetch.Have(), 0U);
 }
 
+// While it was fetched, exactly at what is here, or before it.
+TEST(FileFetchTest, AfterAFileWasCutOffTheNodeIsAskedAnewWhatItHas)
+{
+    for (const std::size_t left : {FileFetch::PartSize, FileFetch::PartSize - 1})
+    {
+        const auto file = Content(3 * FileFetch::PartSize);
+        FileFetch fetch("a.mcap", 0, 1);
+        fetch.SetNode(1, true, 0s);
+        fetch.Answered(AnswerOf(file, fetch.Due(0s)[0]), 0s);
+        const auto parts = fetch.Due(0s);
+        fetch.Answered(AnswerOf(file, parts[0]), 0s);
+        Answer cutOff = AnswerOf(file, parts[1]);
+        cutOff.result = left == FileFetch::PartSize ? Result::OK : Result::FAILED;
+        cutOff.size = left;
+        cutOff.bytes.clear();
+        fetch.Answered(cutOff, 0s);
+        EXPECT_EQ(fetch.Refusal(), "");
+        const auto facts = fetch.Due(FileFetch::Pause);
+        ASSERT_EQ(facts.size(), 1U);
+        EXPECT_EQ(facts[0].kind, Kind::FACTS);
+        fetch.Answered(AnswerOf(Content(left), facts[0]), FileFetch::Pause);
+        EXPECT_EQ(fetch.IsWhole(), left == FileFetch::PartSize);
+        EXPECT_EQ(fetch.Have(), left == FileFetch::PartSize ? left : 0U);
+    }
+}
+
 TEST(FileFetchTest, ARefusalHasAReason)
 {
     FileFetch fetch("a.mcap", 0, 1);
