@@ -35,6 +35,8 @@ namespace
 using namespace Backfill;
 
 constexpr double LookPeriod = 0.1;  // seconds
+// Until recordings that could not be read are read again.
+constexpr std::chrono::seconds ReadPeriod(1);
 // Answers under way to one node. A restart of either end costs these at most.
 constexpr std::size_t MostAnswers = 4;
 
@@ -88,10 +90,7 @@ public:
     {
         static_cast<void>(
             _manager.AddPublishSubscribeMessage(FleetMessageNameOf(_config), _fleet));  // the gateway says so
-        if (_requester)
-        {
-            ReadRecordings();
-        }
+        _isLedgerRead = _requester && ReadRecordings();
     }
 
     void Work()
@@ -141,7 +140,7 @@ public:
             {
                 if (!_outbox.Send(asking.Node, asking.What))
                 {
-                    _requester->Failed(asking.Node, asking.What, now);
+                    _requester->Refused(asking.Node, asking.What, now);
                 }
             }
         }
@@ -171,26 +170,37 @@ private:
                            [&message](const PublishRule &rule) { return rule.Message == message; });
     }
     // Nothing is requested that could not be recorded. When the disk has failed nobody knows which posts are
-    // on it: once it works again, the ledger is read from the recordings anew. Until then no post goes to the
-    // recorder, so that these are complete.
+    // on it: once it works again, the ledger is read from the recordings anew. Until then no post that can
+    // come later goes to the recorder, so that these are complete.
     void LookAtDisk(Duration now)
     {
         const RecordingWatch::State state = _watch.Look(_target->Status(), now);
-        if (state == RecordingWatch::State::WorksAgain)
+        const bool works = state != RecordingWatch::State::Fails;
+        _isLedgerRead = _isLedgerRead && state != RecordingWatch::State::WorksAgain;
+        if (works && !_isLedgerRead && now >= _readNotBefore)
         {
             _ledger->Clear();
-            ReadRecordings();
-            _requester->StartOver(now);
+            _isLedgerRead = ReadRecordings();
+            _readNotBefore = now + ReadPeriod;
+            if (_isLedgerRead)
+            {
+                _requester->StartOver(now);
+            }
         }
-        _isPaused = state == RecordingWatch::State::Fails;
+        _isPaused = !works || !_isLedgerRead;
+        if (_isPaused)
+        {
+            _streams->SetLiveOnly(_requester->LiveOnly());
+        }
         _streams->SetPaused(_isPaused);
     }
-    void ReadRecordings()
+    // False: they cannot be read now.
+    bool ReadRecordings()
     {
         const auto last =
             static_cast<std::uint64_t>(std::chrono::nanoseconds(_config.Record->BackfillLast).count());
         const std::uint64_t now = _target->Now();
-        ReadLedger(_config.Record->Folder, _config.Node, now - std::min(now, last), *_ledger);
+        return ReadLedger(_config.Record->Folder, _config.Node, now - std::min(now, last), *_ledger);
     }
 
     void TakeFleet(Duration now)
@@ -229,7 +239,10 @@ private:
             }
             if (_isPaused)
             {
-                problems.push_back({"backfill", "", "nothing is requested, since nothing can be recorded"});
+                problems.push_back({"backfill", "",
+                                    _isLedgerRead ? "nothing is requested, since nothing can be recorded"
+                                                  : "nothing is requested, since the recordings of this node "
+                                                    "cannot be read"});
             }
             if (const std::uint64_t count = _streams->Incredible(); count > 0)
             {
@@ -319,7 +332,9 @@ private:
     std::unique_ptr<Requester> _requester;    // likewise
     QuestionQueue _questions;
     RecordingWatch _watch;
-    bool _isPaused = false;  // the disk failed
+    bool _isLedgerRead = false;  // it has what is in the recordings
+    Duration _readNotBefore{0};
+    bool _isPaused = false;  // the disk failed, or the recordings cannot be read
     const std::shared_ptr<Told> _told = std::make_shared<Told>();
 };
 

@@ -65,8 +65,8 @@ std::map<std::uint64_t, std::vector<FolderPosts::Part>> FolderPosts::PartsOf(con
         }
         for (const RecordingIndex::Piece &piece : file.Pieces)
         {
-            const bool isUnknown =
-                !file.Channels.contains(piece.Channel) && !file.OtherChannels.contains(piece.Channel);
+            const bool isUnknown = piece.IsOfAnyChannel || (!file.Channels.contains(piece.Channel) &&
+                                                            !file.OtherChannels.contains(piece.Channel));
             if (channels.contains(piece.Channel) || isUnknown)
             {
                 parts[incarnation].push_back({&file, &piece, sourceToLog, isUnknown});
@@ -84,23 +84,42 @@ RecordingIndex::Access FolderPosts::Visit(const Part &part,
 }
 
 // The first message may have been posted long before the recording began.
-Stamp FolderPosts::FirstStamp(const Part &part)
+std::optional<Stamp> FolderPosts::FirstStamp(const std::vector<Part> &parts)
 {
-    const auto placed =
-        _firsts.try_emplace({part.File->Path + ":" + std::to_string(part.Piece->Channel), part.Piece->Offset},
-                            std::numeric_limits<Stamp>::max());
-    const auto known = placed.first;
-    if (placed.second)
+    Stamp first = std::numeric_limits<Stamp>::max();
+    for (std::size_t i = 0; i < std::min(parts.size(), FirstParts); ++i)
     {
-        Visit(part, [&known, &part](const Mcap::Message &message)
-              { known->second = std::min(known->second, StampAt(message.PublishTime, part.SourceToLog)); });
+        const Part &part = parts[i];
+        const std::pair key(part.File->Path + ":" + std::to_string(part.Piece->Channel), part.Piece->Offset);
+        if (const auto known = _firsts.find(key); known != _firsts.end())
+        {
+            first = std::min(first, known->second);
+            continue;
+        }
+        Stamp stamp = StampAt(part.Piece->FirstLog, part.SourceToLog);
+        const RecordingIndex::Access access =
+            Visit(part, [&stamp, &part](const Mcap::Message &message)
+                  { stamp = std::min(stamp, StampAt(message.PublishTime, part.SourceToLog)); });
+        if (access == RecordingIndex::Access::Failed)
+        {
+            return std::nullopt;
+        }
+        if (access == RecordingIndex::Access::Done)
+        {
+            _firsts.emplace(key, stamp);
+        }
+        first = std::min(first, stamp);
     }
-    return std::min(known->second, StampAt(part.Piece->FirstLog, part.SourceToLog));
+    return first;
 }
 
-std::vector<PostsCodec::Span> FolderPosts::Spans(const std::string &message, std::uint64_t last)
+std::optional<std::vector<PostsCodec::Span>> FolderPosts::Spans(const std::string &message,
+                                                                std::uint64_t last)
 {
-    _index.Refresh();
+    if (!_index.Refresh())
+    {
+        return std::nullopt;
+    }
     std::uint64_t newest = 0;
     for (const auto &[name, file] : _index.Files())
     {
@@ -119,8 +138,13 @@ std::vector<PostsCodec::Span> FolderPosts::Spans(const std::string &message, std
         {
             continue;
         }
+        const std::optional<Stamp> first = FirstStamp(parts);
+        if (!first)
+        {
+            return std::nullopt;
+        }
         Range range;
-        range.First = std::max(FirstStamp(parts.front()), StampAt(oldest, parts.front().SourceToLog));
+        range.First = std::max(*first, StampAt(oldest, parts.front().SourceToLog));
         range.End = isPresent ? StampAt(std::max(newest, SettledAfter) - SettledAfter, end.SourceToLog)
                               : end.LastStamp() + 1;
         range.End = std::max(range.End, range.First);
@@ -138,13 +162,13 @@ PostStore::Found FolderPosts::Read(const std::string &message, std::uint64_t inc
 {
     Found found{.First = range.First, .Posts = {}};
     std::vector<Part> parts = std::move(PartsOf(message)[incarnation]);
-    // The first part may hold a post from before the recording: it is always looked at.
+    // The first parts may hold a post from before the recording: they are always looked at.
     std::vector<Part> chosen;
     for (std::size_t i = 0; i < parts.size(); ++i)
     {
         const bool isAfter = StampAt(parts[i].Piece->FirstLog, parts[i].SourceToLog) >
                              range.End + StepsIn(static_cast<std::int64_t>(SettledAfter));
-        if (parts[i].LastStamp() >= range.First && (!isAfter || i == 0))
+        if (parts[i].LastStamp() >= range.First && (!isAfter || i < FirstParts))
         {
             chosen.push_back(parts[i]);
         }

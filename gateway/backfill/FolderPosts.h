@@ -2,8 +2,10 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "backfill/PostStore.h"
 #include "backfill/RecordingIndex.h"
@@ -29,12 +31,17 @@ public:
         _now = now;
     }
 
-    std::vector<PostsCodec::Span> Spans(const std::string &message, std::uint64_t last) override;
+    std::optional<std::vector<PostsCodec::Span>> Spans(const std::string &message,
+                                                       std::uint64_t last) override;
     Found Read(const std::string &message, std::uint64_t incarnation, Range range,
                const std::vector<Stamp> &had, std::size_t most) override;
     std::uint64_t Present() const override { return _incarnation; }
 
 private:
+    // The first posts of an incarnation are in one of so many parts: small and large messages have chunks of
+    // their own, which are written one after the other.
+    static constexpr std::size_t FirstParts = 2;
+
     // The pieces of one message in one file, and the clock of that file.
     struct Part
     {
@@ -47,7 +54,8 @@ private:
         Stamp LastStamp() const;
     };
     std::map<std::uint64_t, std::vector<Part>> PartsOf(const std::string &message) const;
-    Stamp FirstStamp(const Part &part);
+    // Empty: it cannot be read now.
+    std::optional<Stamp> FirstStamp(const std::vector<Part> &parts);
     RecordingIndex::Access Visit(const Part &part,
                                  const std::function<void(const Mcap::Message &message)> &visit);
 

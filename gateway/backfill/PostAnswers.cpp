@@ -26,7 +26,8 @@ Answer PostAnswers::Of(const std::string &node, const Question &question)
     else if (question.kind == Kind::SPANS)
     {
         const auto spans = _store.Spans(question.name, question.to);
-        answer.bytes = PostsCodec::EncodeSpans(spans);
+        answer.result = spans ? Result::OK : Result::FAILED;
+        answer.bytes = PostsCodec::EncodeSpans(spans.value_or(std::vector<PostsCodec::Span>()));
     }
     else
     {
@@ -35,8 +36,9 @@ Answer PostAnswers::Of(const std::string &node, const Question &question)
     return answer;
 }
 
-// Of a former incarnation without posts, nothing is there to be missed. The present one may not have written
-// its first ones yet.
+// A node asks only for stamps within a span that it was told once. So posts before the present span, and
+// those of a former incarnation without one, were removed. The present one may not have written its first
+// ones yet.
 void PostAnswers::AnswerPosts(const Question &question, Answer &answer)
 {
     const auto had = PostsCodec::DecodeStamps(question.had, question.from);
@@ -46,28 +48,40 @@ void PostAnswers::AnswerPosts(const Question &question, Answer &answer)
         answer.result = Result::FAILED;
         return;
     }
-    const auto spans = _store.Spans(question.name, std::numeric_limits<std::uint64_t>::max());
-    const auto span = std::find_if(spans.begin(), spans.end(),
-                                   [&question](const PostsCodec::Span &one)
-                                   { return one.Incarnation == question.incarnation; });
-    if (span == spans.end())
-    {
-        answer.to = question.incarnation == _store.Present() ? question.from : question.to;
-        return;
-    }
-    // Of an incarnation that is over, nothing comes behind the last post.
-    const Stamp end = span->IsOver ? question.to : std::min(question.to, span->Stamps.End);
-    const Range range{question.from, std::max(question.from, end)};
     const std::size_t most = question.most == 0
                                  ? LargestAnswer
                                  : std::clamp<std::size_t>(question.most, SmallestAnswer, LargestAnswer);
     if (question.offset > 0 && _large.Name == question.name && _large.Incarnation == question.incarnation &&
         _large.Of == question.from)
     {
-        answer.to = range.End;
         AnswerPart(question, most, answer);
         return;
     }
+    const auto spans = _store.Spans(question.name, std::numeric_limits<std::uint64_t>::max());
+    if (!spans)
+    {
+        answer.result = Result::FAILED;
+        return;
+    }
+    const auto span = std::find_if(spans->begin(), spans->end(),
+                                   [&question](const PostsCodec::Span &one)
+                                   { return one.Incarnation == question.incarnation; });
+    const bool isThere = span != spans->end();
+    if (!isThere && question.incarnation == _store.Present())
+    {
+        answer.to = question.from;
+        return;
+    }
+    if (!isThere || (question.from < question.to && span->Stamps.First >= question.to))
+    {
+        answer.result = Result::FAILED;
+        answer.size = NeverReadable;
+        return;
+    }
+    // Of an incarnation that is over, nothing comes behind the last post.
+    const Stamp end = span->IsOver ? question.to : std::min(question.to, span->Stamps.End);
+    const Stamp first = std::max(question.from, std::min(question.to, span->Stamps.First));
+    const Range range{first, std::max(first, end)};
     PostStore::Found found = _store.Read(question.name, question.incarnation, range, *had, most);
     answer.result = found.Is == PostStore::Found::Result::Readable ? Result::OK : Result::FAILED;
     answer.size = found.Is == PostStore::Found::Result::Damaged ? NeverReadable : 0;

@@ -24,7 +24,7 @@ public:
     static constexpr std::size_t SmallestAnswer = 512;
 
     // Answer::size of an answer that FAILED: the posts of its range can never be read, since a file is
-    // damaged.
+    // damaged or was removed.
     static constexpr std::uint64_t NeverReadable = 1;
 
     // True if that node may have that message.

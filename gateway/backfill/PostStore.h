@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,10 @@ public:
 
     // The incarnations of which there are posts of this message that are at most `last` seconds old. All
     // posts in these ranges that were recorded at all can be read, but for those of a file that is damaged.
-    virtual std::vector<PostsCodec::Span> Spans(const std::string &message, std::uint64_t last) = 0;
+    // Posts that are older than a range, or of an incarnation without one, are there no more. Empty: it
+    // cannot be told now, since a file or the folder cannot be read.
+    virtual std::optional<std::vector<PostsCodec::Span>> Spans(const std::string &message,
+                                                               std::uint64_t last) = 0;
 
     // Bytes that a post takes in an answer beside its own, at most.
     static constexpr std::size_t PostOverhead = 16;

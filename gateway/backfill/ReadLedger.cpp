@@ -32,13 +32,13 @@ void TakeMark(const Mcap::Message &message, Ledger &ledger)
 
 }  // namespace
 
-void ReadLedger(const std::string &folder, const std::string &node, std::uint64_t since, Ledger &ledger)
+bool ReadLedger(const std::string &folder, const std::string &node, std::uint64_t since, Ledger &ledger)
 {
     const std::string marks = MarksTopicOf(node);
     RecordingIndex index(folder, node,
                          [&marks](const Mcap::Channel &channel)
                          { return channel.Topic == marks || SeriesIn(channel); });
-    index.Refresh(true);
+    bool isWhole = index.Refresh(true);
     for (const auto &[name, file] : index.Files())
     {
         if (!file.IsOwn || file.NewestLog < since)
@@ -48,25 +48,28 @@ void ReadLedger(const std::string &folder, const std::string &node, std::uint64_
         for (const RecordingIndex::Piece &piece : file.Pieces)
         {
             const auto channel = file.Channels.find(piece.Channel);
-            if (channel == file.Channels.end())
+            if (piece.IsOfAnyChannel || channel == file.Channels.end())
             {
                 continue;  // of a damaged part: its posts are asked for again
             }
             const auto known = SeriesIn(channel->second);
-            index.Visit(file, piece,
-                        [&](const Mcap::Message &message)
-                        {
-                            if (known)
+            const RecordingIndex::Access access =
+                index.Visit(file, piece,
+                            [&](const Mcap::Message &message)
                             {
-                                ledger.Take(known->Of, StampIn(message, known->SourceToLog));
-                            }
-                            else
-                            {
-                                TakeMark(message, ledger);
-                            }
-                        });
+                                if (known)
+                                {
+                                    ledger.Take(known->Of, StampIn(message, known->SourceToLog));
+                                }
+                                else
+                                {
+                                    TakeMark(message, ledger);
+                                }
+                            });
+            isWhole = isWhole && access != RecordingIndex::Access::Failed;
         }
     }
+    return isWhole;
 }
 
 }  // namespace Rabit::Backfill

@@ -41,6 +41,8 @@ public:
         std::uint16_t Channel = 0;
         std::uint64_t FirstLog = 0;  // log times
         std::uint64_t LastLog = 0;
+        // The chunk is damaged and has no indexes: it may have messages of each channel.
+        bool IsOfAnyChannel = false;
     };
     struct File
     {
@@ -63,8 +65,9 @@ public:
 
     // Looks for new files, and reads what has come. Files that are gone, and old ones, are forgotten. The
     // last chunk of the newest file is left for later, since its indexes may still be being written, unless
-    // `isOver`.
-    void Refresh(bool isOver = false);
+    // `isOver`. False: the folder or a file cannot be read now, so something may be missing in Files. A file
+    // that was removed, or that this user may not read, is not missing.
+    bool Refresh(bool isOver = false);
     // By their names, the oldest first; only those of this node count.
     const std::map<std::string, File> &Files() const { return _files; }
     enum class Access
@@ -85,9 +88,21 @@ private:
         Mcap::Bytes Records;
     };
 
-    void ReadOn(File &file, bool mayGrow);
-    void TakeIndex(File &file, std::uint64_t chunk, std::uint64_t length, const Mcap::MessageIndex &index);
-    Access LearnChannels(File &file, std::uint64_t chunk, std::uint64_t length);
+    // A chunk, and the indexes that stand behind it.
+    struct Chunk
+    {
+        std::uint64_t Offset = 0;
+        std::uint64_t Length = 0;    // 0: none
+        std::uint64_t FirstLog = 0;  // log times
+        std::uint64_t LastLog = 0;
+        std::vector<Mcap::MessageIndex> Indexes;
+        bool IsIndexed = true;  // no index is damaged or may be missing
+    };
+
+    // These return false if the file cannot be read now. Chunks that were taken before stay.
+    bool ReadOn(File &file, bool mayGrow);
+    bool TakeChunk(File &file, Chunk &chunk, std::uint64_t end);
+    Access ReadChunk(File &file, Chunk &chunk);
     void LearnFromSummary(File &file);
     void Learn(File &file, const Mcap::Channel &channel) const;
     // Null if it cannot be read, with the reason. Valid until the next call.

@@ -189,6 +189,12 @@ void Requester::Failed(const std::string &name, const Question &question, Durati
     }
 }
 
+void Requester::Refused(const std::string &name, const Question &question, Duration now)
+{
+    Failed(name, question, now);
+    _nodes[name].Messages[question.name].IsLiveOnly = true;
+}
+
 std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &name, Answer answer,
                                                             const Record &record, Duration now)
 {
@@ -206,6 +212,7 @@ std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &n
     const Asked asked = std::move(*wanted->second.Open);
     wanted->second.Open.reset();
     wanted->second.Refusal = answer.result == Result::OK ? "" : TextOf(answer.result);
+    wanted->second.IsLiveOnly = answer.result == Result::UNKNOWN;
     if (answer.result == Result::FAILED && answer.kind == Kind::POSTS &&
         answer.size == PostAnswers::NeverReadable && answer.from >= asked.What.from &&
         answer.from < answer.to && answer.to <= asked.What.to)
@@ -216,6 +223,7 @@ std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &n
         wanted->second.Large.reset();
         wanted->second.Damaged = Series{name, answer.name, answer.incarnation};
         wanted->second.DamagedUntil = answer.to;
+        wanted->second.DamagedAt = now;
         return std::nullopt;
     }
     if (answer.result != Result::OK)
@@ -231,7 +239,7 @@ std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &n
     {
         // A node that has just begun has nothing yet.
         wanted->second.NextSpans = now + (answer.bytes.empty() ? ShortestLook : LongestLook);
-        TakeSpans(name, answer, wanted->second);
+        TakeSpans(name, answer, wanted->second, now);
         return std::nullopt;
     }
     if (now - asked.At < Patience / 4 && answer.bytes.size() >= wanted->second.Most / 2)
@@ -241,7 +249,7 @@ std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &n
     return TakePosts(name, asked, answer, record, wanted->second, now);
 }
 
-void Requester::TakeSpans(const std::string &node, const Answer &answer, Wanted &wanted)
+void Requester::TakeSpans(const std::string &node, const Answer &answer, Wanted &wanted, Duration now)
 {
     const auto spans = PostsCodec::DecodeSpans(answer.bytes);
     if (!spans)
@@ -256,7 +264,7 @@ void Requester::TakeSpans(const std::string &node, const Answer &answer, Wanted 
         isDamaged = isDamaged || (wanted.Damaged && wanted.Damaged->Incarnation == span.Incarnation &&
                                   span.Stamps.First < wanted.DamagedUntil);
     }
-    if (!isDamaged)
+    if (!isDamaged && now - wanted.DamagedAt >= LossTold)
     {
         wanted.Damaged.reset();
     }
@@ -375,12 +383,29 @@ std::map<std::pair<std::string, std::string>, std::string> Requester::Refusals()
         {
             if (node.IsUp && (!wanted.Refusal.empty() || wanted.Damaged))
             {
-                refusals[{name, message}] =
-                    wanted.Refusal.empty() ? "a part of its recording is damaged" : wanted.Refusal;
+                refusals[{name, message}] = wanted.Refusal.empty()
+                                                ? "a part of its recording is damaged, or was removed"
+                                                : wanted.Refusal;
             }
         }
     }
     return refusals;
+}
+
+std::set<std::pair<std::string, std::string>> Requester::LiveOnly() const
+{
+    std::set<std::pair<std::string, std::string>> series;
+    for (const auto &[name, node] : _nodes)
+    {
+        for (const auto &[message, wanted] : node.Messages)
+        {
+            if (wanted.IsLiveOnly)
+            {
+                series.emplace(name, message);
+            }
+        }
+    }
+    return series;
 }
 
 }  // namespace Rabit::Backfill

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -44,6 +45,8 @@ public:
     static constexpr Duration LongestLook = std::chrono::seconds(60);
     // Until a node that refused a question, or did not answer it, is asked again.
     static constexpr Duration Pause = std::chrono::seconds(30);
+    // A part that can never be read is told for this long at least, and as long as it could be requested.
+    static constexpr Duration LossTold = LongestLook;
     // Time in which a node is UP until an answer is taken for lost. The next one is asked to be half as
     // large, since the channel may be too slow, and after an answer that came in a quarter of this, twice as
     // large.
@@ -69,9 +72,11 @@ public:
         std::string Node;
         Question What;
     };
-    // The questions to send now. Failed must be called of each that cannot be delivered.
+    // The questions to send now. Failed must be called of each that cannot be delivered, Refused of each that
+    // is refused at the call.
     std::vector<Asking> Due(Duration now);
     void Failed(const std::string &node, const Question &question, Duration now);
+    void Refused(const std::string &node, const Question &question, Duration now);
 
     enum class Taken
     {
@@ -92,6 +97,9 @@ public:
     std::uint64_t Malformed() const { return _malformed; }
     // Nodes that do not answer for that message, and why, by node and message.
     std::map<std::pair<std::string, std::string>, std::string> Refusals() const;
+    // Node and message of posts that come live or never: the node does not record them, or answers no
+    // questions.
+    std::set<std::pair<std::string, std::string>> LiveOnly() const;
 
 private:
     struct Asked
@@ -120,6 +128,8 @@ private:
         std::string Refusal;
         std::optional<Series> Damaged;  // a part of its posts can never be read
         Stamp DamagedUntil = 0;
+        Duration DamagedAt{0};  // when the node told
+        bool IsLiveOnly = false;
     };
     struct Node
     {
@@ -133,7 +143,7 @@ private:
     std::optional<Asking> NextOf(const std::string &name, Node &node, Duration now);
     std::optional<Asked> Next(const std::string &node, std::uint64_t present, const std::string &message,
                               const Wanted &wanted, Duration now) const;
-    void TakeSpans(const std::string &node, const Answer &answer, Wanted &wanted);
+    void TakeSpans(const std::string &node, const Answer &answer, Wanted &wanted, Duration now);
     enum class Part
     {
         None,  // the answer is whole

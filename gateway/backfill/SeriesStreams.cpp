@@ -86,20 +86,25 @@ std::uint32_t SeriesStreams::StreamOf(const Series &series, bool isLive, std::in
 
 void SeriesStreams::SetPaused(bool isPaused)
 {
-    std::map<Series, Early> early;
+    std::map<Series, Newest> newest;
     {
         const std::lock_guard lock(_mutex);
         _isPaused = isPaused;
-        _hasBegun = _hasBegun || !isPaused;
         if (!isPaused)
         {
-            early.swap(_early);
+            newest.swap(_newest);
         }
     }
-    for (auto &[series, live] : early)
+    for (auto &[series, live] : newest)
     {
         Record(series, live.SourceTime, live.PostedAt, std::move(live.Sample));
     }
+}
+
+void SeriesStreams::SetLiveOnly(std::set<std::pair<std::string, std::string>> series)
+{
+    const std::lock_guard lock(_mutex);
+    _liveOnly = std::move(series);
 }
 
 void SeriesStreams::TakeLive(const GatewayTap::MirroredSample &sample)
@@ -112,11 +117,11 @@ void SeriesStreams::TakeLive(const GatewayTap::MirroredSample &sample)
     Mcap::Bytes bytes(sample.Sample.begin(), sample.Sample.end());
     {
         const std::lock_guard lock(_mutex);
-        if (_isPaused)
+        if (_isPaused && !_liveOnly.contains({series.Node, series.Message}))
         {
-            if (!_hasBegun && (_early.contains(series) || _early.size() < MostEarly))
+            if (_newest.contains(series) || _newest.size() < MostNewest)
             {
-                _early[series] = Early{sample.SourceTime, sample.PostedAt, std::move(bytes)};
+                _newest[series] = Newest{sample.SourceTime, sample.PostedAt, std::move(bytes)};
             }
             return;
         }

@@ -26,8 +26,8 @@ namespace Rabit::Backfill
 class SeriesStreams
 {
 public:
-    // Series whose newest message is kept before the first end of the pause.
-    static constexpr std::size_t MostEarly = 256;
+    // Series whose newest message is kept during a pause.
+    static constexpr std::size_t MostNewest = 256;
 
     SeriesStreams(const GatewayConfig &config, std::shared_ptr<RecordingTarget> target,
                   std::shared_ptr<Ledger> ledger);
@@ -42,10 +42,12 @@ public:
     // A range that is whole from now on.
     void TakeWhole(const Series &series, Range range);
 
-    // While paused no live message is recorded: it comes later. Paused from the beginning on, until it is
-    // known what the recordings have. Then the newest live message of each series is recorded, since its
-    // origin may not record.
+    // While paused no live message is recorded, as it comes later, but for those of SetLiveOnly. At the end
+    // of the pause the newest one of each series is, since its origin may not record. Paused from the
+    // beginning on, until it is known what the recordings have.
     void SetPaused(bool isPaused);
+    // Node and message of posts that do not come later: during a pause they are recorded as they come.
+    void SetLiveOnly(std::set<std::pair<std::string, std::string>> series);
 
     std::uint64_t Incredible() const { return _incredible; }
     // Posts that do not fit into the memory of the recording.
@@ -54,8 +56,8 @@ public:
     bool IsBackfilled(std::string_view message) const { return _messages.contains(message); }
 
 private:
-    // A live message that came before the first end of the pause.
-    struct Early
+    // The last live message of a series in this pause.
+    struct Newest
     {
         std::int64_t SourceTime = 0;
         std::chrono::nanoseconds PostedAt{0};
@@ -76,8 +78,8 @@ private:
     std::mutex _mutex;  // guards the members below
     bool _isPaused = true;
     std::map<std::pair<Series, bool>, std::uint32_t> _streams;
-    bool _hasBegun = false;
-    std::map<Series, Early> _early;
+    std::set<std::pair<std::string, std::string>> _liveOnly;
+    std::map<Series, Newest> _newest;
 };
 
 // The topic in which whole ranges are recorded, as JSON.

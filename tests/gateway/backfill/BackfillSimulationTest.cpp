@@ -6,6 +6,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <optional>
 #include <random>
 #include <set>
 #include <string>
@@ -37,7 +38,7 @@ public:
     std::map<std::uint64_t, Life> Lives;
     std::int64_t Now = 0;
 
-    std::vector<PostsCodec::Span> Spans(const std::string &message, std::uint64_t) override
+    std::optional<std::vector<PostsCodec::Span>> Spans(const std::string &message, std::uint64_t) override
     {
         std::vector<PostsCodec::Span> spans;
         for (const auto &[incarnation, life] : Lives)

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <optional>
+
 namespace Rabit::Backfill
 {
 namespace
@@ -11,7 +13,10 @@ namespace
 class Store final : public PostStore
 {
 public:
-    std::vector<PostsCodec::Span> Spans(const std::string &, std::uint64_t) override { return Known; }
+    std::optional<std::vector<PostsCodec::Span>> Spans(const std::string &, std::uint64_t) override
+    {
+        return CanLook ? std::optional(Known) : std::nullopt;
+    }
     Found Read(const std::string &, std::uint64_t, Range range, const std::vector<Stamp> &,
                std::size_t) override
     {
@@ -19,6 +24,7 @@ public:
     }
     std::uint64_t Present() const override { return PresentIncarnation; }
 
+    bool CanLook = true;
     std::vector<PostsCodec::Span> Known;
     std::uint64_t PresentIncarnation = 8;
     Found::Result Is = Found::Result::Readable;
@@ -43,12 +49,52 @@ protected:
                         [](const std::string &) { return true; }};
 };
 
-TEST_F(PostAnswersTest, OfAnIncarnationThatIsGoneNothingIsMissing)
+// It was told once, else nobody would ask for it.
+TEST_F(PostAnswersTest, AnIncarnationWhoseFilesWereRemovedIsNotWhole)
 {
     const Answer answer = Ask(7);
-    EXPECT_EQ(answer.result, Result::OK);
+    EXPECT_EQ(answer.result, Result::FAILED);
+    EXPECT_EQ(answer.size, PostAnswers::NeverReadable);
     EXPECT_EQ(answer.from, 100U);
     EXPECT_EQ(answer.to, 200U);
+}
+
+TEST_F(PostAnswersTest, PostsInFilesThatWereRemovedAreNotWhole)
+{
+    for (const std::uint64_t incarnation : {7U, 8U})
+    {
+        store.Known = {{7, {200, 300}, true}, {8, {200, 300}, false}};
+        const Answer answer = Ask(incarnation);
+        EXPECT_EQ(answer.result, Result::FAILED);
+        EXPECT_EQ(answer.size, PostAnswers::NeverReadable);
+        EXPECT_EQ(answer.from, 100U);
+        EXPECT_EQ(answer.to, 200U);
+    }
+}
+
+TEST_F(PostAnswersTest, BehindFilesThatWereRemovedTheRestIsWhole)
+{
+    store.Known = {{7, {150, 300}, true}};
+    const Answer answer = Ask(7);
+    EXPECT_EQ(answer.result, Result::OK);
+    EXPECT_EQ(answer.from, 150U);
+    EXPECT_EQ(answer.to, 200U);
+}
+
+TEST_F(PostAnswersTest, WhileTheRecordingsCannotBeLookedAtNothingIsSaid)
+{
+    store.CanLook = false;
+    for (const std::uint64_t incarnation : {7U, 8U})
+    {
+        EXPECT_EQ(Ask(incarnation).result, Result::FAILED);
+        EXPECT_EQ(Ask(incarnation).size, 0U) << "it is to be asked again";
+    }
+    Question spans;
+    spans.kind = Kind::SPANS;
+    spans.name = "Pose";
+    EXPECT_EQ(answers.Of("ground", spans).result, Result::FAILED);
+    store.CanLook = true;
+    EXPECT_EQ(answers.Of("ground", spans).result, Result::OK);
 }
 
 TEST_F(PostAnswersTest, OfThePresentIncarnationNothingIsWholeBeforeItsFirstPostIsWritten)

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
+#include <set>
 
 #include "backfill/PostAnswers.h"
 #include "backfill/PostsCodec.h"
@@ -147,9 +149,9 @@ class LargePostStore final : public PostStore
 public:
     static constexpr std::size_t Size = 450'000;
 
-    std::vector<PostsCodec::Span> Spans(const std::string &, std::uint64_t) override
+    std::optional<std::vector<PostsCodec::Span>> Spans(const std::string &, std::uint64_t) override
     {
-        return {{7, {1000, 2000}, true}};
+        return std::vector<PostsCodec::Span>{{7, {1000, 2000}, true}};
     }
     Found Read(const std::string &, std::uint64_t, Range range, const std::vector<Stamp> &had,
                std::size_t) override
@@ -274,13 +276,58 @@ TEST_F(RequesterTest, APartThatCanNeverBeReadIsLeftOutAndTold)
     const auto whole = requester.Answered("uav1", WithPost(due[0].What, TimeOf(1500)), record, 2s);
     ASSERT_TRUE(whole);
     EXPECT_EQ(whole->second, (Range{1000, 1700}));
-    EXPECT_EQ(requester.Refusals().at({"uav1", "Pose"}), "a part of its recording is damaged");
+    EXPECT_EQ(requester.Refusals().at({"uav1", "Pose"}),
+              "a part of its recording is damaged, or was removed");
     // The damaged file is removed in time.
     const auto spans = requester.Due(1s + Requester::LongestLook);
     Answer answer = AnswerTo(spans.at(0).What);
     answer.bytes = PostsCodec::EncodeSpans({{7, {2500, 3000}}});
     requester.Answered("uav1", answer, record, 62s);
     EXPECT_TRUE(requester.Refusals().empty());
+}
+
+// Else the loss would be told for a moment alone: the next spans begin behind it.
+TEST_F(RequesterTest, APartThatWasRemovedIsToldForAMinute)
+{
+    const Question question = AskForPosts();
+    Answer removed = AnswerTo(question);
+    removed.result = Result::FAILED;
+    removed.size = PostAnswers::NeverReadable;
+    const auto at = Requester::LongestLook - 1s;
+    EXPECT_FALSE(requester.Answered("uav1", removed, record, at));
+    for (const auto now : {Requester::LongestLook, 2 * Requester::LongestLook})
+    {
+        EXPECT_EQ(requester.Refusals().count({"uav1", "Pose"}), 1U);
+        const auto spans = requester.Due(now);
+        ASSERT_EQ(spans.size(), 1U);
+        ASSERT_EQ(spans[0].What.kind, Kind::SPANS);
+        Answer answer = AnswerTo(spans[0].What);
+        answer.bytes = PostsCodec::EncodeSpans({{7, {2000, 2000}}});
+        requester.Answered("uav1", answer, record, now);
+    }
+    EXPECT_TRUE(requester.Refusals().empty());
+}
+
+TEST_F(RequesterTest, PostsThatANodeDoesNotRecordComeLiveAlone)
+{
+    const std::set<std::pair<std::string, std::string>> pose{{"uav1", "Pose"}};
+    Answer answer = AnswerTo(requester.Due(0s).at(0).What);
+    EXPECT_TRUE(requester.LiveOnly().empty()) << "not known yet";
+    answer.result = Result::UNKNOWN;
+    requester.Answered("uav1", answer, record, 0s);
+    EXPECT_EQ(requester.LiveOnly(), pose);
+    answer = AnswerTo(requester.Due(Requester::Pause).at(0).What);
+    requester.Answered("uav1", answer, record, Requester::Pause);
+    EXPECT_TRUE(requester.LiveOnly().empty());
+}
+
+TEST_F(RequesterTest, PostsOfANodeThatTakesNoQuestionsComeLiveAlone)
+{
+    const auto due = requester.Due(0s);
+    requester.Refused("uav1", due.at(0).What, 0s);
+    EXPECT_EQ(requester.LiveOnly().size(), 1U);
+    EXPECT_TRUE(requester.Due(1s).empty());
+    EXPECT_EQ(requester.Due(Requester::Pause).size(), 1U) << "it is asked again";
 }
 
 TEST_F(RequesterTest, ANodeThatIsNotUpIsNotAskedAndNotGivenUp)
