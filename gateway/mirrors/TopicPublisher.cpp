@@ -43,12 +43,10 @@ TopicPublisher::Duration TopicPublisher::Service(Duration now)
     return std::max(DueAt(now), now);
 }
 
-// A value that was posted before may be there still, and is the first one.
 void TopicPublisher::SetAttached()
 {
     _global = _local->GetGlobalPublishSubscribeMessageRef().get();
-    const std::uint64_t posts = _global->GetNumberOfPosts();
-    _postsBefore = posts == 0 ? 0 : posts - 1;
+    _posts.Begin(_global->GetNumberOfPosts());
 }
 
 void TopicPublisher::Fetch()
@@ -60,7 +58,7 @@ void TopicPublisher::Fetch()
     const std::uint64_t posts = _global->GetNumberOfPosts();
     if (_local->FetchMessage() && _local->WasPosted())
     {
-        _offered = posts - _postsBefore;
+        _posts.Fetched(posts);
         _pending = true;
         _time = TimeOfPost();
     }
@@ -175,14 +173,17 @@ void TopicPublisher::AskedFor(Duration now)
 
 WriteResult TopicPublisher::WriteValue(Way way)
 {
-    _taken += _pending ? 1 : 0;
+    const bool wasPending = _pending;
     const WriteResult result = (_writer.*way)(*_local, _time);
     _writtenTime = _time;
     _written += result == WriteResult::Ok ? 1 : 0;
     // A value that the network did not take in time is tried again; a value that can never be sent would only
     // fail again.
-    _taken -= _pending && result == WriteResult::TimedOut ? 1 : 0;
     _pending = result == WriteResult::TimedOut;
+    if (wasPending && !_pending)
+    {
+        _posts.Taken();
+    }
     _everWritten = true;
     return result;
 }
@@ -192,9 +193,8 @@ Gateway::PublicationStatus TopicPublisher::Status() const
     Gateway::PublicationStatus status;
     status.message = _rule.Message;
     status.written = _written;
-    const std::uint64_t kept = _taken + (_pending ? 1 : 0);
-    status.offered = std::max(_offered, kept);
-    status.replaced = status.offered - kept;
+    status.offered = _posts.Offered(_pending);
+    status.replaced = _posts.Replaced(_pending);
     status.write_failures = _failures;
     status.readers = static_cast<std::uint32_t>(std::max(0, _writer.MatchedReaders()));
     return status;

@@ -16,6 +16,7 @@
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
 #include "mirrors/InstanceWriter.h"
+#include "mirrors/PostCount.h"
 #include "mirrors/RepeatPace.h"
 #include "mirrors/StateVersion.h"
 
@@ -99,9 +100,7 @@ private:
     std::uint32_t _version = StateVersion::None;
     RepeatPace _repeat;
     Duration _lastWrite{0};
-    std::uint64_t _offered = 0;  // posts, of this name, since it was attached
-    std::uint64_t _postsBefore = 0;
-    std::uint64_t _taken = 0;  // posts whose values were written or never can be
+    PostCount _posts;
     std::uint64_t _written = 0;
     std::uint64_t _failures = 0;
 };
