@@ -140,7 +140,7 @@ private:
         {
             const auto size = SizeOf(_config.Node, rule.Local, {rule.Type});
             _plan.Items.push_back({rule.Topic, OnAir(size.value_or(0.0), false),
-                                   RateOf(rule.Local, rule.MaxRate), 1, size.has_value()});
+                                   RateOf(rule.Local, rule.MaxRate), 1, size.has_value(), rule.Local});
         }
     }
 
@@ -212,7 +212,7 @@ private:
 
 void Stated::Add(const std::string &what, double number)
 {
-    _stated.emplace_back(what.find('/') == std::string::npos ? "*/" + what : what, number);
+    _stated.emplace_back(what, number);
 }
 
 std::optional<double> Stated::Of(const std::string &node, const std::string &name) const
@@ -220,7 +220,9 @@ std::optional<double> Stated::Of(const std::string &node, const std::string &nam
     for (const auto &[what, number] : _stated)
     {
         const std::size_t slash = what.find('/');
-        if (MatchesPattern(what.substr(0, slash), node) && MatchesPattern(what.substr(slash + 1), name))
+        const bool ofNode = slash != std::string::npos && MatchesPattern(what.substr(0, slash), node) &&
+                            MatchesPattern(what.substr(slash + 1), name);
+        if (ofNode || MatchesPattern(what, name))
         {
             return number;
         }
@@ -245,10 +247,55 @@ std::vector<std::string> AirPlan::NotKnown() const
             const std::string what = !item.Rate && !item.SizeKnown ? "rate and size of "
                                      : !item.Rate                  ? "rate of "
                                                                    : "size of ";
-            list.push_back(what + item.What);
+            list.push_back(what + (item.Name.empty() ? item.What : item.Name));
         }
     }
     return list;
+}
+
+std::vector<std::string> NamesIn(const std::vector<GatewayConfig> &fleet, bool types)
+{
+    std::vector<std::string> names;
+    const auto add = [&names, types](const std::string &name, const std::vector<std::string> &ofTypes)
+    {
+        names.push_back(name);
+        names.insert(names.end(), ofTypes.begin(), types ? ofTypes.end() : ofTypes.begin());
+    };
+    for (const GatewayConfig &config : fleet)
+    {
+        for (const PublishRule &rule : config.Publish)
+        {
+            add(rule.Message, {rule.Type});
+        }
+        for (const AcceptRule &rule : config.Accept)
+        {
+            add(rule.Queue, rule.Types);
+        }
+        for (const SubscribeRule &rule : config.Subscribe)
+        {
+            add(rule.Message, {rule.Type});
+        }
+        for (const ForeignRule &rule : config.Foreign)
+        {
+            add(rule.Local, {rule.Type});
+        }
+        for (const SendRule &rule : config.Send)
+        {
+            add(rule.Queue, {});
+        }
+    }
+    return names;
+}
+
+bool IsAmong(const std::vector<std::string> &names, const std::string &stated)
+{
+    const std::size_t slash = stated.find('/');
+    const std::string ofNode = slash == std::string::npos ? stated : stated.substr(slash + 1);
+    return std::any_of(names.begin(), names.end(),
+                       [&stated, &ofNode](const std::string &one) {
+                           return MatchesPattern(ofNode, one) || MatchesPattern(one, ofNode) ||
+                                  MatchesPattern(stated, one);
+                       });
 }
 
 std::vector<AirPlan> AirPlansOf(const std::vector<GatewayConfig> &fleet, const AirPlanInput &input)

@@ -15,7 +15,8 @@ namespace Rabit::Tool
 {
 
 // Rates or sizes that a person states for messages and queues: `uav1/Pose` (of that node; `*` and `?` are
-// wildcards), `Pose` (of all nodes). The first match holds.
+// wildcards), `Pose` (of all nodes), `Px4/Command` (of all nodes that call a message so). The first match
+// holds.
 class Stated
 {
 public:
@@ -43,6 +44,7 @@ struct AirItem
     std::optional<double> Rate{};  // a second
     std::size_t Copies = 1;        // destinations that have one each
     bool SizeKnown = true;
+    std::string Name{};  // by which its rate and size are stated; empty: What
 
     double BytesPerSecond() const { return Rate.value_or(0.0) * Bytes * static_cast<double>(Copies); }
 };
@@ -57,6 +59,13 @@ struct AirPlan
     // Lists missing numbers, as `rate of Findings`, `size of Findings`.
     std::vector<std::string> NotKnown() const;
 };
+
+// Returns the names, of the messages and queues of `fleet`, for which a person may state a rate. `types`:
+// adds the names of their types, for sizes.
+std::vector<std::string> NamesIn(const std::vector<GatewayConfig> &fleet, bool types);
+
+// True if a stated name, such as `uav1/Pose`, fits one of `names`.
+bool IsAmong(const std::vector<std::string> &names, const std::string &stated);
 
 // Returns a plan for each node of `fleet`, in its order; `fleet` must outlive them. If a node is alone in its
 // domain, one reader is assumed for each of its messages.

@@ -14,7 +14,6 @@
 #include "IdlFiles.h"
 #include "SafeText.h"
 #include "Table.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {
@@ -158,44 +157,17 @@ std::vector<std::vector<std::string>> Details(const std::vector<AirPlan> &plans)
 // Says which name of --rate or --size is no message, queue or type of the fleet; empty: all are.
 std::string UnknownName(const Options &options, const std::vector<GatewayConfig> &fleet)
 {
-    std::vector<std::string> names;
-    std::vector<std::string> types;
-    for (const GatewayConfig &config : fleet)
-    {
-        for (const PublishRule &rule : config.Publish)
-        {
-            names.push_back(rule.Message);
-            types.push_back(rule.Type);
-        }
-        for (const AcceptRule &rule : config.Accept)
-        {
-            names.push_back(rule.Queue);
-            types.insert(types.end(), rule.Types.begin(), rule.Types.end());
-        }
-        for (const SubscribeRule &rule : config.Subscribe)
-        {
-            names.push_back(rule.Message);
-            types.push_back(rule.Type);
-        }
-        for (const SendRule &rule : config.Send)
-        {
-            names.push_back(rule.Queue);
-        }
-    }
-    types.insert(types.end(), names.begin(), names.end());
-    for (const auto &[option, texts, known] :
-         {std::tuple("--rate", &options.Rates, &names), std::tuple("--size", &options.Sizes, &types)})
+    for (const auto &[option, texts, names] : {std::tuple("--rate", &options.Rates, NamesIn(fleet, false)),
+                                               std::tuple("--size", &options.Sizes, NamesIn(fleet, true))})
     {
         for (const std::string &text : *texts)
         {
             std::string name = text.substr(0, text.find('='));
-            name.erase(0, name.find('/') == std::string::npos ? 0 : name.find('/') + 1);
-            if (std::none_of(known->begin(), known->end(),
-                             [&name](const std::string &one)
-                             { return MatchesPattern(name, one) || MatchesPattern(one, name); }))
+            if (!IsAmong(names, name))
             {
+                name.erase(0, name.find('/') == std::string::npos ? 0 : name.find('/') + 1);
                 return std::string(option) + " " + text + ": no node has a `" + name + "`" +
-                       NearestWordHint(name, *known);
+                       NearestWordHint(name, names);
             }
         }
     }

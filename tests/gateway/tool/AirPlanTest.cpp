@@ -113,6 +113,30 @@ TEST(AirPlan, WhatGoesToProgramsThatAreNoNodesCounts)
     EXPECT_DOUBLE_EQ(Of(AirPlansOf(fleet, input)[0], "rt/setpoint"), -1.0);
 }
 
+TEST(AirPlan, ARateIsStatedForTheLocalNameOfAForeignTopic)
+{
+    std::vector<GatewayConfig> fleet{NodeOf("a")};
+    ForeignRule written;
+    written.Way = ForeignRule::Direction::Publish;
+    written.Topic = "rt/setpoint";
+    written.Type = "S";
+    written.Local = "Px4/Setpoint";
+    fleet[0].Foreign = {written};
+    EXPECT_THAT(AirPlansOf(fleet, InputOf(0, 0))[0].NotKnown(), ElementsAre("rate and size of Px4/Setpoint"));
+    for (const char *const name : {"Px4/Setpoint", "a/Px4/Setpoint", "*/Px4/Setpoint"})
+    {
+        AirPlanInput input = InputOf(0, 0);
+        input.Rates.Add(name, 50.0);
+        input.Sizes.Add(name, 200.0);
+        const auto plans = AirPlansOf(fleet, input);
+        EXPECT_DOUBLE_EQ(Of(plans[0], "rt/setpoint"), 50.0 * 288.0) << name;
+        EXPECT_TRUE(IsAmong(NamesIn(fleet, false), name)) << name;
+    }
+    EXPECT_FALSE(IsAmong(NamesIn(fleet, false), "Setpoint"));
+    EXPECT_FALSE(IsAmong(NamesIn(fleet, false), "S"));
+    EXPECT_TRUE(IsAmong(NamesIn(fleet, true), "S"));
+}
+
 TEST(AirPlan, WhatIsNotKnownIsSaid)
 {
     const std::vector<GatewayConfig> fleet{NodeOf("a")};

@@ -290,6 +290,19 @@ def a_name_of_a_rate_that_no_node_has_is_wrong_usage(rabit):
     assert done.returncode == 2 and "no node has a `Poze`; did you mean `Pose`?" in done.stderr, done
 
 
+def a_message_for_a_foreign_topic_counts(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        thin = pathlib.Path(folder) / "uav.yaml"
+        thin.write_text("node: uav1\nradio: {budget: 3kB/s}\nforeign:\n"
+                        "  - {publish: Setpoint, topic: rt/setpoint, type: Px4::Setpoint, names: ros2}\n")
+        idl = pathlib.Path(folder) / "px4.idl"
+        idl.write_text("module Px4 { struct Setpoint { octet data[200]; }; };\n")
+        done = check(rabit, str(thin), "--idl", str(idl), "--rate", "Setpoint=50")
+        assert done.returncode == 1 and "most of it rt/setpoint with 14400 B/s" in done.stdout, done
+        done = check(rabit, str(thin), "--idl", str(idl), "--rate", "Setpoint=5")
+        assert done.returncode == 0 and done.stderr == "", done
+
+
 def a_variable_of_the_environment_that_is_wrong_is_named(rabit):
     assert "RABIT_DOMAIN=many" in run(rabit, "nodes", RABIT_DOMAIN="many").stderr
 
