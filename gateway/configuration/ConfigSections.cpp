@@ -283,7 +283,8 @@ ConfigSection ForeignSection()
         "a `foreign` entry",
         "A topic of programs that are no nodes. An entry has either `subscribe` or `publish`.",
         {{"subscribe", "name of a topic", "", "rt/chatter", "The topic that is read."},
-         {"publish", "name of a local message", "", "Setpoint", "The local message that is written."},
+         {"publish", "name of a local message or queue", "", "Setpoint",
+          "The local message that is written, or the queue whose messages are written."},
          {"type", "name of an IDL type", "", "std_msgs::msg::String",
           "The type must be linked into the program.", RequiredKey},
          {"names", "`plain` or `ros2`", "plain", "ros2",
@@ -294,20 +295,23 @@ ConfigSection ForeignSection()
           "Default: `as_found` for `subscribe`, `volatile` for `publish`."},
          {"as", "name of a local message or queue", "", "Chatter", "Only with `subscribe`, which needs it."},
          {"each", "`latest` or `queue`", "latest", "queue",
-          "Only with `subscribe`. `latest`: the newest sample is the message. `queue`: each sample goes into "
-          "the queue."},
+          "`latest`: the newest sample is the message, or the newest value is written. `queue`: each sample "
+          "goes into the queue, or each message for the queue is written."},
          {"stale_after", "time, or 0s", "", "2s",
           "Only with `subscribe`. STALE if nothing came for this time. Default: never."},
          {"age", "`arrival` or `source_time`", "arrival", "source_time",
           "Only with `subscribe`. The moment from which the age of a sample counts."},
          {"capacity", "1 to 1000000", "1000", "100",
-          "Only with `each: queue`. Samples that may wait for room in the queue."},
+          "Only with `each: queue`. Samples that may wait for room in the queue, or messages that may wait "
+          "to "
+          "be written."},
          {"capacity_bytes", "1 to 1099511627776", "16777216", "1000000",
           "Only with `each: queue`. Serialized bytes that may wait. A larger sample waits only alone."},
          {"topic", "name of a topic", "", "rt/fmu/in/trajectory_setpoint",
           "Only with `publish`. Default: the name of the message."},
-         {"depth", "1 to 10000", "10", "1",
-          "Only with `publish`. Samples that are kept for retransmission and late readers."},
+         {"depth", "1 to 10000", "", "1",
+          "Only with `publish`. Samples that are kept for retransmission and late readers. Default: 10, with "
+          "`each: queue` 1000."},
          {"max_rate", "number from 0 to 1000000, Hz", "0", "50",
           "Only with `publish`. Samples a second at most. 0: no limit."}}};
 }

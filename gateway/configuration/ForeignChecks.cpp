@@ -41,6 +41,17 @@ public:
         {
             _topics[rule.Message] = {rule.Type, rule.Line};
         }
+        for (const AcceptRule &rule : _config.Accept)
+        {
+            _managersQueues[rule.Queue] = rule.Line;
+        }
+        for (const ForeignRule &rule : _config.Foreign)
+        {
+            if (IsSubscribed(rule) && rule.Each == ForeignRule::Delivery::Queue)
+            {
+                _managersQueues[rule.Local] = rule.Line;
+            }
+        }
         for (const ForeignRule &rule : _config.Foreign)
         {
             Check(rule);
@@ -91,7 +102,7 @@ private:
             Fail(rule.Line, "`stale_after` is out of range; expected 0s (never) to a day");
         }
         CheckMaxRate(rule.MaxRate, rule.Line);
-        CheckRange(rule.Depth, 10'000, "depth", rule.Line);
+        CheckRange(rule.Depth.value_or(1), 10'000, "depth", rule.Line);
         CheckRange(rule.Capacity, 1'000'000, "capacity", rule.Line);
         CheckRange(rule.CapacityBytes, std::size_t{1} << 40, "capacity_bytes", rule.Line);
     }
@@ -100,7 +111,12 @@ private:
     {
         if (rule.Each == ForeignRule::Delivery::Queue)
         {
-            return;  // a queue takes messages of any type, from anybody
+            // A queue that is read into takes messages of any type, from anybody.
+            if (!IsSubscribed(rule))
+            {
+                CheckWrittenQueue(rule);
+            }
+            return;
         }
         CheckOneType(_messages, rule.Local, rule.Type, "the message", rule.Line);
         if (IsSubscribed(rule))
@@ -111,6 +127,18 @@ private:
                 Fail(rule.Line, "`" + rule.Local + "` belongs to the gateway; expected another name");
             }
         }
+    }
+
+    // A message goes into a manager's queue, or to one topic.
+    void CheckWrittenQueue(const ForeignRule &rule)
+    {
+        if (const auto queue = _managersQueues.find(rule.Local); queue != _managersQueues.end())
+        {
+            Fail(rule.Line, "the queue `" + rule.Local + "` is a manager's" +
+                                (queue->second > 0 ? " by line " + std::to_string(queue->second) : "") +
+                                "; expected a name that no manager's queue has");
+        }
+        CheckOnce(_writtenQueues, rule.Local, "foreign", rule.Line);
     }
 
     void CheckOneType(SaidOf &known, const std::string &name, const std::string &type, const char *what,
@@ -145,6 +173,8 @@ private:
     std::map<std::string, int> _subscribed;
     std::map<std::string, int> _published;
     std::map<std::string, int> _posted;
+    std::map<std::string, int> _managersQueues;
+    std::map<std::string, int> _writtenQueues;
 };
 
 }  // namespace

@@ -13,8 +13,7 @@ namespace
 {
 
 // Keys that only one of the two directions has.
-const std::vector<std::string> OfSubscribe = {"as",  "each",     "stale_after",
-                                              "age", "capacity", "capacity_bytes"};
+const std::vector<std::string> OfSubscribe = {"as", "stale_after", "age"};
 const std::vector<std::string> OfPublish = {"topic", "depth", "max_rate"};
 
 void RefuseKeys(const YamlMap &entry, const std::vector<std::string> &keys, const char *direction)
@@ -53,11 +52,8 @@ void ReadSubscribed(const YamlMap &entry, ForeignRule &rule)
     entry.Require("as");
     entry.Read("subscribe", rule.Topic);
     entry.Read("as", rule.Local);
-    entry.Read("each", {"latest", "queue"}, rule.Each);
     entry.Read("stale_after", rule.StaleAfter);
     rule.SourceTimeIsTrusted = entry.ReadChoice("age", {"arrival", "source_time"}) == 1;
-    entry.Read("capacity", rule.Capacity, 1, 1'000'000);
-    entry.Read("capacity_bytes", rule.CapacityBytes, 1, std::size_t{1} << 40);
 }
 
 void ReadPublished(const YamlMap &entry, ForeignRule &rule)
@@ -67,7 +63,10 @@ void ReadPublished(const YamlMap &entry, ForeignRule &rule)
     entry.Read("publish", rule.Local);
     rule.Topic = rule.Local;
     entry.Read("topic", rule.Topic);
-    entry.Read("depth", rule.Depth, 1, 10'000);
+    if (entry.Has("depth"))
+    {
+        entry.Read("depth", rule.Depth.emplace(), 1, 10'000);
+    }
     entry.Read("max_rate", rule.MaxRate);
 }
 
@@ -85,6 +84,9 @@ void ReadForeign(const YamlMap &map, GatewayConfig &config)
         }
         entry.Read("type", rule.Type);
         entry.Read("names", {"plain", "ros2"}, rule.Names);
+        entry.Read("each", {"latest", "queue"}, rule.Each);
+        entry.Read("capacity", rule.Capacity, 1, 1'000'000);
+        entry.Read("capacity_bytes", rule.CapacityBytes, 1, std::size_t{1} << 40);
         if (entry.Has("subscribe"))
         {
             ReadSubscribed(entry, rule);

@@ -156,9 +156,10 @@ private:
 
     void CheckImportance(TrafficClass traffic, double weight, int line) const
     {
-        if (traffic == TrafficClass::Presence)
+        if (!MayBeChosen(traffic))
         {
-            Fail(line, "the class presence is the gateway's own; expected another one");
+            Fail(line, std::string("the class ") + TrafficClasses.at(static_cast<std::size_t>(traffic)).Name +
+                           " is the gateway's own; expected another one");
         }
         if (!(weight >= AirSchedule::SmallestWeight && weight <= AirSchedule::LargestWeight))
         {

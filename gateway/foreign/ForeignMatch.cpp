@@ -90,7 +90,9 @@ TopicQos WriterQos(const ForeignRule &rule)
     TopicQos qos;
     qos.Reliability = rule.Reliability.value_or(Reliability::Reliable);
     qos.Durability = rule.Durability.value_or(Durability::Volatile);
-    qos.Depth = static_cast<int>(rule.Depth);
+    const std::size_t byDefault =
+        rule.Each == ForeignRule::Delivery::Queue ? ForeignRule::DepthOfQueue : ForeignRule::DepthOfMessage;
+    qos.Depth = static_cast<int>(rule.Depth.value_or(byDefault));
     return qos;
 }
 

@@ -1,11 +1,24 @@
 #include "foreign/ForeignTopics.h"
 
+#include <rabit/RabitLog.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
 namespace Rabit
 {
+namespace
+{
+
+// No gateway has such a name.
+std::string ForwarderOf(const GatewayConfig &config)
+{
+    return config.Name + "/foreign";
+}
+
+}  // namespace
 
 void ForeignTopics::Open(TransportSession &session, RabitManager &manager, Duration now)
 {
@@ -22,17 +35,60 @@ void ForeignTopics::Open(TransportSession &session, RabitManager &manager, Durat
             _readers.back().Open(session, now);
             continue;
         }
-        ForeignPublisher &publisher = _publishers.emplace_back(rule, type, network, _source, session);
-        if (manager.AddPublishSubscribeMessage(rule.Local, publisher.Local()))
+        AddPublisher(rule, type, network, session, manager);
+    }
+    if (!_outboxes.empty())
+    {
+        const auto queues = std::make_shared<ForeignQueues>();
+        for (const std::shared_ptr<ForeignOutbox> &outbox : _outboxes)
         {
-            manager.WakeUpManagerOnMessagePost(publisher.Local());
-            publisher.SetAttached();
+            queues->Add(outbox->Queue(), outbox);
         }
+        _workspace = &manager.GetWorkspace();
+        _workspace->AddQueueForwarder(ForwarderOf(_config), queues);
+    }
+}
+
+void ForeignTopics::AddPublisher(const ForeignRule &rule, const MessageType &type,
+                                 const ForeignMatch::Network &network, TransportSession &session,
+                                 RabitManager &manager)
+{
+    RabitWorkspace &workspace = manager.GetWorkspace();
+    const AirCost cost(_config.MaxDatagram);
+    if (rule.Each == ForeignRule::Delivery::Queue)
+    {
+        const auto outbox =
+            std::make_shared<ForeignOutbox>(rule, type, workspace.GetClock(), _source, _outboxes.size(),
+                                            manager.WakeUpHandler(), _handlers, _config.Tap);
+        _publishers.emplace_back(rule, type, network, workspace, _source, session, cost, outbox);
+        _outboxes.push_back(outbox);
+        return;
+    }
+    ForeignPublisher &publisher =
+        _publishers.emplace_back(rule, type, network, workspace, _source, session, cost);
+    if (manager.AddPublishSubscribeMessage(rule.Local, publisher.Local()))
+    {
+        manager.WakeUpManagerOnMessagePost(publisher.Local());
+        publisher.SetAttached();
     }
 }
 
 void ForeignTopics::Close()
 {
+    if (RabitWorkspace *const workspace = std::exchange(_workspace, nullptr))
+    {
+        workspace->RemoveQueueForwarder(ForwarderOf(_config));
+    }
+    for (const std::shared_ptr<ForeignOutbox> &outbox : std::exchange(_outboxes, {}))
+    {
+        if (const std::size_t left = outbox->Close(); left > 0)
+        {
+            RabitLog::Write(RabitLogLevel::Warning,
+                            "gateway: " + std::to_string(left) + " messages of the queue `" +
+                                outbox->Queue() +
+                                "` were accepted for a foreign topic and not sent before the end");
+        }
+    }
     _readers.clear();
     _publishers.clear();
 }
@@ -82,7 +138,7 @@ void ForeignTopics::Report(Duration now, Gateway::Fleet &fleet)
     }
     for (ForeignPublisher &publisher : _publishers)
     {
-        add(publisher.Status(), publisher.Problem());
+        add(publisher.Status(), publisher.Problem(now));
     }
 }
 

@@ -39,14 +39,14 @@ void AirReport::Rate::Look(std::uint64_t bytes, double seconds)
 }
 
 Gateway::AirStatus AirReport::Fill(const TransportCounters &counters, std::optional<double> capacity,
-                                   const std::deque<TopicPublisher> &publishers,
+                                   const std::deque<TopicPublisher> &publishers, std::uint64_t foreignBytes,
                                    const std::function<bool(std::string_view node)> &carries,
                                    Gateway::Fleet &fleet, Duration now)
 {
     if (_measuredAt == Duration(0) || now - _measuredAt >= ShortestTime)
     {
         const double seconds = std::chrono::duration<double>(now - _measuredAt).count();
-        Measure(counters, publishers, fleet, seconds);
+        Measure(counters, publishers, foreignBytes, fleet, seconds);
         _measuredAt = now;
     }
     Gateway::AirStatus air;
@@ -84,6 +84,8 @@ Gateway::AirStatus AirReport::Fill(const TransportCounters &counters, std::optio
         RateOf(ImportanceOf(_config.Send, link.node, link.queue).Class, air) += link.bytes_per_s;
         divided += link.bytes_per_s;
     }
+    RateOf(TrafficClass::Foreign, air) += _foreign.PerSecond;
+    divided += _foreign.PerSecond;
     air.presence = std::max(0.0, _samples.PerSecond - divided);
     return air;
 }
@@ -103,10 +105,11 @@ std::string AirReport::TextOf(const Gateway::AirStatus &air)
 }
 
 void AirReport::Measure(const TransportCounters &counters, const std::deque<TopicPublisher> &publishers,
-                        const Gateway::Fleet &fleet, double seconds)
+                        std::uint64_t foreignBytes, const Gateway::Fleet &fleet, double seconds)
 {
     _discovery.Look(counters.DiscoveryBytes, seconds);
     _samples.Look(counters.SampleBytes, seconds);
+    _foreign.Look(foreignBytes, seconds);
     _publications.resize(publishers.size());
     for (std::size_t i = 0; i < publishers.size(); ++i)
     {

@@ -21,8 +21,8 @@ namespace Rabit
 
 // Fills the part of Gateway/Fleet about the air: rates over about the last second, from rising counters. If
 // called more often, it gives the same rates again. The bytes sent are those that the transport has counted.
-// The shares of publications and links are computed from the sizes of their samples, and the rest is
-// presence.
+// The shares of publications, links and foreign topics are computed from the sizes of their samples, and the
+// rest is presence.
 class AirReport
 {
 public:
@@ -35,9 +35,9 @@ public:
     // links to these nodes, and adds to those of the publications, which are there already, the latter in the
     // order of the publishers. Adds a problem for each publication whose newest value takes more than a
     // second of the budget, or of the capacity. `capacity`: estimated capacity of the channel in bytes a
-    // second; empty: it does not limit this node.
+    // second; empty: it does not limit this node. `foreignBytes`: of the foreign topics since the beginning.
     Gateway::AirStatus Fill(const TransportCounters &counters, std::optional<double> capacity,
-                            const std::deque<TopicPublisher> &publishers,
+                            const std::deque<TopicPublisher> &publishers, std::uint64_t foreignBytes,
                             const std::function<bool(std::string_view node)> &carries, Gateway::Fleet &fleet,
                             Duration now);
 
@@ -61,13 +61,14 @@ private:
     };
 
     void Measure(const TransportCounters &counters, const std::deque<TopicPublisher> &publishers,
-                 const Gateway::Fleet &fleet, double seconds);
+                 std::uint64_t foreignBytes, const Gateway::Fleet &fleet, double seconds);
 
     const GatewayConfig &_config;
     const AirCost _cost;
     Duration _measuredAt{0};
     Rate _discovery;
     Rate _samples;
+    Rate _foreign;
     std::vector<Publication> _publications;
     std::map<std::pair<std::string, std::string>, Rate> _links;  // node, queue
 };

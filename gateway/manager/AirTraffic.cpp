@@ -37,8 +37,9 @@ std::size_t LargestDatagramOf(const GatewayConfig &config)
 }  // namespace
 
 AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence,
-                       LinkDriver &links, std::deque<TopicPublisher> &publishers, TypeExchange &types,
-                       const PathChoice &choice, std::size_t path)
+                       LinkDriver &links, std::deque<TopicPublisher> &publishers,
+                       std::deque<ForeignPublisher> *foreign, TypeExchange &types, const PathChoice &choice,
+                       std::size_t path)
     : _config(config),
       _clock(clock),
       _presence(presence),
@@ -56,6 +57,7 @@ AirTraffic::AirTraffic(const GatewayConfig &config, const RabitClock &clock, Pre
       _linkStreams(
           config.Send, links, _schedule,
           [&presence](std::string_view node) { return presence.SessionsOf(node); }, choice, path),
+      _foreign(foreign, _schedule),
       _report(config, _cost)
 {
 }
@@ -78,6 +80,7 @@ void AirTraffic::Open(TransportSession &session)
         _publisherStreams.push_back(
             _schedule.AddStream(ImportanceOf(publisher.Rule()), publisher.Rule().Weight));
     }
+    _foreign.Open();
     // Bytes that were sent while the session was opened count as sent now.
     _watchedAt = Now();
     SetLimit(_watchedAt);
@@ -200,7 +203,7 @@ Duration AirTraffic::ServeUnlimited(Duration now)
         SendBeat(BeatFormat::Largest, now);
         beatDue = _presence.BeatDue();
     }
-    Duration next = std::min({beatDue, _links.Service(), _types.Service(now)});
+    Duration next = std::min({beatDue, _links.Service(), _types.Service(now), _foreign.SendAll(now)});
     for (TopicPublisher &publisher : _publishers)
     {
         next = std::min(next, publisher.Service(Now()));
@@ -308,6 +311,7 @@ Duration AirTraffic::ServeLimited()
     LookAtTypes(now);
     LookAtCards();
     _linkStreams.Look(_schedule.Budget().LargestDatagram(), now);
+    _foreign.Look(now);
     while (const auto chosen = _schedule.Next(now))
     {
         Send(*chosen, now);
@@ -326,6 +330,7 @@ Duration AirTraffic::ServeLimited()
         const Duration due = _mirrored != Mirrored::Nothing ? publisher.DueAt(now) : now;
         next = due > now ? std::min(next, due) : next;
     }
+    next = std::min(next, _foreign.NextDue(now));
     _links.WillServe(next);
     return next;
 }
@@ -335,6 +340,7 @@ void AirTraffic::Send(StreamId id, Duration now)
     const std::size_t most = _schedule.Budget().LargestDatagram();
     std::size_t publisher = _publishers.size();
     bool sent = true;
+    bool isForeign = false;
     if (id == _beat)
     {
         const std::size_t room = _schedule.Room(std::max(most, AirBudget::SmallestDatagram), now);
@@ -347,6 +353,10 @@ void AirTraffic::Send(StreamId id, Duration now)
     else if (id == _cards)
     {
         _turns->SendNext();
+    }
+    else if (_foreign.Send(id, now))
+    {
+        isForeign = true;
     }
     else if (!_linkStreams.Send(id, most, now, sent))
     {
@@ -378,6 +388,10 @@ void AirTraffic::Send(StreamId id, Duration now)
     {
         LookAtCards();
     }
+    else if (isForeign)
+    {
+        _foreign.Look(now);
+    }
     else if (sent)
     {
         _linkStreams.Look(most, now);
@@ -396,7 +410,8 @@ Gateway::AirStatus AirTraffic::Report(Gateway::Fleet &fleet, Duration now)
                 status->delivery_rate = path.DeliveryRate;
             }
         });
-    return _report.Fill(_session->Counters(), _estimate.Rate(now), _publishers, carries, fleet, now);
+    return _report.Fill(_session->Counters(), _estimate.Rate(now), _publishers, _foreign.SentBytes(), carries,
+                        fleet, now);
 }
 
 }  // namespace Rabit

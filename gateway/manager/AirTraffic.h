@@ -17,6 +17,7 @@
 #include "air/UnscheduledShare.h"
 #include "gateway.idl.h"
 #include "manager/AirReport.h"
+#include "manager/ForeignStreams.h"
 #include "manager/LinkStreams.h"
 #include "manager/TypeExchange.h"
 #include "mirrors/TopicPublisher.h"
@@ -35,7 +36,8 @@ namespace Rabit
 //   datagrams (CapacityEstimate).
 // - Streams are: the beats (class presence); for each node, acknowledgements and hellos (class command); the
 //   exchange of cards (class state, before other states); the texts of types that are asked for (class bulk);
-//   each link; each published message. A datagram is made when its turn has come, from the newest data.
+//   each link; each published message; each foreign topic that is written (class foreign). A datagram is made
+//   when its turn has come, from the newest data.
 // - Each datagram is paid for with the bytes that the transport counted for it. DDS's own traffic is paid
 //   for, too, and a part of a budget is kept free for it when it is due.
 // - With a budget the exchange of keys may take half of it (DiscoveryTurns::SetKeyRate).
@@ -48,10 +50,11 @@ class AirTraffic
 public:
     using Duration = std::chrono::nanoseconds;
 
-    // Of the path with that number. References must outlive the object.
+    // Of the path with that number. References must outlive the object. `foreign`: null on a path without
+    // foreign topics.
     AirTraffic(const GatewayConfig &config, const RabitClock &clock, Presence &presence, LinkDriver &links,
-               std::deque<TopicPublisher> &publishers, TypeExchange &types, const PathChoice &choice,
-               std::size_t path);
+               std::deque<TopicPublisher> &publishers, std::deque<ForeignPublisher> *foreign,
+               TypeExchange &types, const PathChoice &choice, std::size_t path);
 
     // From now on the session's exchange of cards waits for Serve. To be called as soon as the session
     // exists. `wakeUp`: called, on any thread, when Serve is to be called before the time that it returned.
@@ -60,6 +63,7 @@ public:
     void Open(TransportSession &session);
     void Close()
     {
+        _foreign.Close();
         _session = nullptr;
         _turns = nullptr;
     }
@@ -135,6 +139,7 @@ private:
     StreamId _cards;
     std::vector<StreamId> _publisherStreams;
     LinkStreams _linkStreams;
+    ForeignStreams _foreign;
     AirReport _report;
 
     BeatRate _beats;

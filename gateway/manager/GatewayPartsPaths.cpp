@@ -37,6 +37,7 @@ void GatewayManager::Parts::MakePaths(const std::vector<std::shared_ptr<Transpor
         .Remote = _remote,
         .Links = _links,
         .Subscribed = _subscriptions,
+        .Foreign = _foreign,
         .Choice = _choice,
         .Random = random,
         .IsNeeded = [this](const std::string &node) { return IsNeeded(node); },

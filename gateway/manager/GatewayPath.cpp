@@ -34,8 +34,8 @@ GatewayPath::GatewayPath(GatewayConfig config, std::shared_ptr<Rabit::Transport>
                 [this](const std::string &node) { return Carries(node); }),
       _states(_presence, shared.Subscribed, shared.Random),
       _types(_config, _presence, shared.Links, number, shared.WakeUp, shared.OnText, shared.ReportOf),
-      _air(_config, shared.Workspace.GetClock(), _presence, shared.Links, _publishers, _types, shared.Choice,
-           number)
+      _air(_config, shared.Workspace.GetClock(), _presence, shared.Links, _publishers,
+           number == 0 ? &shared.Foreign.Publishers() : nullptr, _types, shared.Choice, number)
 {
 }
 

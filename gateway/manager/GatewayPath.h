@@ -17,6 +17,7 @@
 #include <string>
 
 #include "clocks/SourceClock.h"
+#include "foreign/ForeignTopics.h"
 #include "gateway.idl.h"
 #include "manager/AirTraffic.h"
 #include "manager/TypeExchange.h"
@@ -53,6 +54,7 @@ public:
         RemoteQueues &Remote;
         LinkDriver &Links;
         Subscriptions &Subscribed;
+        ForeignTopics &Foreign;  // of the first path
         PathChoice &Choice;
         RandomSource Random;
         PeerTable::IsNeeded IsNeeded;

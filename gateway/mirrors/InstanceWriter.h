@@ -34,6 +34,15 @@ public:
     {
         return Write(message, sourceTime, &TransportWriter::WriteHeld);
     }
+    // The same for a sample that is no value of the message: of any key, and no instance is disposed for it.
+    WriteResult Write(const SampleEncoder &sample, std::int64_t sourceTime)
+    {
+        return _writer->Write(sample, sourceTime);
+    }
+    WriteResult WriteHeld(const SampleEncoder &sample, std::int64_t sourceTime)
+    {
+        return _writer->WriteHeld(sample, sourceTime);
+    }
     std::size_t HeldBytes() const { return _writer->HeldBytes(); }
     void SendHeld() { _writer->SendHeld(); }
     bool OwesDisposal() const { return !_former.empty(); }

@@ -11,11 +11,13 @@
 namespace Rabit
 {
 
-// The words of the traffic classes that a configuration may choose: all but the first, `presence`.
+// The words of the traffic classes that a configuration may choose: all between the first and the last.
 inline std::vector<std::string> TrafficClassWords()
 {
     std::vector<std::string> words;
-    std::transform(TrafficClasses.begin() + 1, TrafficClasses.end(), std::back_inserter(words),
+    static_assert(!MayBeChosen(TrafficClass::Presence) && !MayBeChosen(TrafficClass::Foreign) &&
+                  static_cast<std::size_t>(TrafficClass::Foreign) + 1 == TrafficClassCount);
+    std::transform(TrafficClasses.begin() + 1, TrafficClasses.end() - 1, std::back_inserter(words),
                    [](const TrafficClassInfo &traffic) { return traffic.Name; });
     return words;
 }

@@ -22,6 +22,11 @@ std::optional<Gateway::AirStatus> AirStatusOf(const std::string &report)
     {
         std::uint64_t number = 0;
         const auto [after, error] = std::from_chars(next, end, number);
+        // Older nodes have no class foreign.
+        if (rate == &air.foreign && next == end)
+        {
+            break;
+        }
         if (error != std::errc())
         {
             return std::nullopt;

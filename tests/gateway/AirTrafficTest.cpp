@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "PlainProgram.h"
 #include "SimulatedFleet.h"
 #include "keyed.idl.h"
 
@@ -321,6 +322,87 @@ TEST_F(AirTrafficTest, WeightsHoldAmongMessagesOfAClass)
     EXPECT_LE(air.used, 1.05 * Budget);
     EXPECT_NEAR(air.used, air.discovery + air.presence + air.command + air.state + air.telemetry + air.bulk,
                 1.0);
+    EXPECT_EQ(air.foreign, 0.0);
+}
+
+// Setpoints for an autopilot at 50 Hz ask for more than twice the budget.
+TEST_F(AirTrafficTest, AForeignTopicTakesTurnsAndSilencesNobody)
+{
+    GatewayConfig config = WithBudget(AircraftConfig("uav1"));
+    config.Foreign.push_back({.Way = ForeignRule::Direction::Publish,
+                              .Topic = "setpoint",
+                              .Type = "Uav::Pose",
+                              .Local = "Setpoint",
+                              .Reliability = Reliability::BestEffort});
+    AddAircraft(config);
+    auto setpoint = aircraft->Register<Uav::Pose>("Setpoint");
+    PlainProgram autopilot(fleet.Network, "setpoint", "Uav::Pose", Reliability::BestEffort);
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    IdleManager &commands = ground.AddIdleManager("Commands");
+    auto seen = ground.Register<Uav::Pose>("uav1/Pose");
+    const auto post = [&](Duration passed)
+    {
+        if (passed % 20ms == 0s)
+        {
+            ++setpoint->number;
+            setpoint->PostMessage();
+        }
+    };
+    Fly(10s, 200ms, 1s, post);
+    Spending spending;
+    int poses = 0;
+    std::uint32_t sent = 0;
+    std::uint32_t arrived = 0;
+    std::size_t before = autopilot.Samples.size();
+    Fly(30s, 200ms, 1s,
+        [&](Duration passed)
+        {
+            post(passed);
+            spending.Add(Bytes("uav1"));
+            sent += passed % 1s == 0s && SendReport(1) ? 1 : 0;
+            poses += seen->FetchMessage() ? 1 : 0;
+            std::shared_ptr<RabitMessage> message;
+            arrived += commands.GetManagerMessageQueue()->GetMessage(message) ? 1 : 0;
+        });
+    EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * Budget);
+    EXPECT_EQ(ground.StateOf("uav1"), "UP");
+    EXPECT_EQ(sent, 30u);
+    EXPECT_GE(arrived, 29u);
+    EXPECT_GE(poses, 140) << "of 150";
+    EXPECT_GE(autopilot.Samples.size() - before, 200u) << "the rest of the budget";
+    const Gateway::Fleet told = aircraft->Fleet();
+    EXPECT_GT(told.air.foreign, 0.3 * Budget);
+    EXPECT_LT(told.air.presence, 0.2 * Budget);
+    EXPECT_NEAR(told.air.used,
+                told.air.discovery + told.air.presence + told.air.command + told.air.state +
+                    told.air.telemetry + told.air.bulk + told.air.foreign,
+                1.0);
+    const Gateway::ForeignTopic topic = told.foreign.at(0);
+    EXPECT_GT(topic.replaced, 900u);
+    EXPECT_NEAR(static_cast<double>(topic.samples + topic.replaced), 2000.0, 51.0);  // up to the last report
+}
+
+TEST_F(AirTrafficTest, AQueueForAForeignTopicWaitsForItsTurnsAndLosesNothing)
+{
+    GatewayConfig config = WithBudget(AircraftConfig("uav1"));
+    config.Foreign.push_back({.Way = ForeignRule::Direction::Publish,
+                              .Topic = "goals",
+                              .Type = "Uav::Goto",
+                              .Local = "Goals",
+                              .Each = ForeignRule::Delivery::Queue});
+    AddAircraft(config);
+    PlainProgram program(fleet.Network, "goals", "Uav::Goto");
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    Fly(5s, 200ms, 1s);
+    for (std::uint32_t number = 0; number < 200; ++number)
+    {
+        ASSERT_TRUE(aircraft->Workspace.AddMessageToQueue("Goals", std::make_shared<Uav::Goto>()));
+    }
+    Spending spending;
+    Fly(60s, 200ms, 1s, [&](Duration) { spending.Add(Bytes("uav1")); });
+    EXPECT_EQ(program.Samples.size(), 200u);
+    EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * Budget);
+    EXPECT_EQ(ground.StateOf("uav1"), "UP");
 }
 
 TEST_F(AirTrafficTest, AnIdleNodeWithABudgetCostsLessThanAHundredBytesASecond)

@@ -99,6 +99,35 @@ TEST_F(ForeignConfigTest, ReadsEveryKeyOfATopicThatIsWritten)
     EXPECT_EQ(WireTypeOf(rule), "Uav::Pose");
 }
 
+TEST_F(ForeignConfigTest, ReadsEveryKeyOfAQueueThatIsWritten)
+{
+    const ForeignRule rule =
+        Load(
+            "foreign:\n  - {publish: Goals, topic: goals, type: Uav::Goto, each: queue, capacity: 7, "
+            "capacity_bytes: 70}\n")
+            .Foreign.at(0);
+    EXPECT_EQ(rule.Way, ForeignRule::Direction::Publish);
+    EXPECT_EQ(rule.Local, "Goals");
+    EXPECT_EQ(rule.Each, ForeignRule::Delivery::Queue);
+    EXPECT_EQ(rule.Capacity, 7u);
+    EXPECT_EQ(rule.CapacityBytes, 70u);
+    EXPECT_EQ(rule.Depth, std::nullopt);
+}
+
+TEST_F(ForeignConfigTest, RefusesAWrittenQueueOfTheNameOfAnotherQueue)
+{
+    const std::string file = _file.filename().string();
+    const std::string written = "  - {publish: A, topic: a, type: Uav::Pose, each: queue}\n";
+    EXPECT_EQ(ErrorOf("foreign:\n" + written + "  - {publish: A, topic: b, type: Uav::Pose, each: queue}\n"),
+              file + ":4: `A` stands twice under `foreign` (first in line 3)");
+    EXPECT_EQ(
+        ErrorOf("foreign:\n" + written + "  - {subscribe: b, as: A, type: Uav::Pose, each: queue}\n"),
+        file + ":3: the queue `A` is a manager's by line 4; expected a name that no manager's queue has");
+    EXPECT_EQ(
+        ErrorOf("accept:\n  - {queue: A, types: [Uav::Pose]}\nforeign:\n" + written),
+        file + ":5: the queue `A` is a manager's by line 3; expected a name that no manager's queue has");
+}
+
 TEST_F(ForeignConfigTest, TakesQosAsItIsFoundUnlessItIsGiven)
 {
     const ForeignRule rule =
@@ -133,6 +162,7 @@ TEST_F(ForeignConfigTest, RefusesKeysOfTheOtherDirection)
 {
     EXPECT_EQ(Refusal("subscribe: a, type: Uav::Pose, as: A, max_rate: 1"),
               "`max_rate` is not for an entry that subscribes");
+    EXPECT_EQ(Refusal("publish: A, type: Uav::Pose, as: B"), "`as` is not for an entry that publishes");
     EXPECT_EQ(Refusal("publish: A, type: Uav::Pose, stale_after: 1s"),
               "`stale_after` is not for an entry that publishes");
     EXPECT_EQ(Refusal("publish: A, type: Uav::Pose, durability: as_found"),

@@ -24,6 +24,7 @@ struct Network
     WriteResult Result = WriteResult::Ok;
     std::vector<std::vector<std::uint8_t>> Written;
     int Disposals = 0;
+    int Readable = 1;  // readers of the topic that is written
 
     // Delivers a sample of a program, or of a node if `node` is not empty.
     void Deliver(const MessageType &type, const RabitMessage &message, std::uint64_t sequence,
@@ -88,7 +89,7 @@ public:
         ++_network.Disposals;
         return WriteResult::Ok;
     }
-    int MatchedReaders() const override { return 1; }
+    int MatchedReaders() const override { return _network.Readable; }
 
 private:
     Network &_network;

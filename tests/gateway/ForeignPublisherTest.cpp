@@ -6,6 +6,8 @@
 #include <rabit/RabitWorkspace.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
+#include <algorithm>
+
 #include "ForeignNetwork.h"
 #include "keyed.idl.h"
 
@@ -35,8 +37,8 @@ protected:
     {
         if (!publisher)
         {
-            publisher =
-                std::make_unique<ForeignPublisher>(rule, type, ForeignMatch::Network{7}, source, session);
+            publisher = std::make_unique<ForeignPublisher>(rule, type, ForeignMatch::Network{7}, workspace,
+                                                           source, session, AirCost(1400));
             workspace.AddPublishSubscribeMessage("Contact", publisher->Local());
             publisher->SetAttached();
         }
@@ -47,7 +49,11 @@ protected:
         local->number = id;
         local->PostMessage();
     }
-    std::chrono::nanoseconds Service() { return Publisher().Service(clock->Monotonic()); }
+    std::chrono::nanoseconds Service()
+    {
+        const std::chrono::nanoseconds look = Publisher().Service(clock->Monotonic());
+        return std::min(look, Publisher().WriteDue(clock->Monotonic()));
+    }
 
     std::shared_ptr<ManualClock> clock = std::make_shared<ManualClock>(1.4e9, 100s);
     RabitWorkspace workspace{clock};
@@ -128,6 +134,45 @@ TEST_F(ForeignPublisherTest, TriesAgainWhatTheNetworkDidNotTake)
     EXPECT_EQ(Publisher().Status().write_failures, 1u);
 }
 
+TEST_F(ForeignPublisherTest, CountsThePostsThatWereReplacedBeforeTheyWereWritten)
+{
+    rule.MaxRate = 10;
+    Publisher();
+    Post(1);
+    Post(2);
+    Service();
+    EXPECT_EQ(Publisher().Status().replaced, 1u);
+    Post(3);
+    Service();
+    Post(4);
+    Service();
+    EXPECT_EQ(Publisher().Status().replaced, 2u);
+    clock->Advance(100ms);
+    Service();
+    EXPECT_EQ(Publisher().Status().samples, 2u);
+    EXPECT_EQ(Publisher().Status().replaced, 2u);
+}
+
+TEST_F(ForeignPublisherTest, WaitsForTheTurnThatAScheduleGivesItAndWritesTheNewestValueThen)
+{
+    Publisher();
+    EXPECT_EQ(Publisher().DueAt(clock->Monotonic()), std::chrono::nanoseconds::max());
+    Post(1);
+    Publisher().Fetch();
+    EXPECT_EQ(Publisher().DueAt(clock->Monotonic()), clock->Monotonic());
+    EXPECT_EQ(Publisher().NextBytes(), AirCost(1400).Of(type.SerializedSize(*local) - 4));
+    Post(2);
+    Publisher().Fetch();
+    EXPECT_EQ(Publisher().SentBytes(), 0u);
+    Publisher().WriteNext(clock->Monotonic());
+    ASSERT_EQ(network.Written.size(), 1u);
+    Contact written;
+    ASSERT_TRUE(type.Deserialize(network.Written[0], written));
+    EXPECT_EQ(written.number, 2u);
+    EXPECT_EQ(Publisher().SentBytes(), AirCost(1400).Of(type.SerializedSize(*local) - 4));
+    EXPECT_EQ(Publisher().DueAt(clock->Monotonic()), std::chrono::nanoseconds::max());
+}
+
 TEST_F(ForeignPublisherTest, DisposesOfTheFormerInstanceWhenTheKeyChanges)
 {
     Publisher();
@@ -144,12 +189,12 @@ TEST_F(ForeignPublisherTest, SaysWhyNothingGoesAndThatAnotherTypeIsAProblem)
     Publisher();
     Service();
     EXPECT_EQ(Publisher().Status().reason, "no program reads `rt/contacts` in domain 7");
-    EXPECT_FALSE(Publisher().Problem());
+    EXPECT_FALSE(Publisher().Problem(clock->Monotonic()));
     network.Endpoints = {{.Topic = "rt/contacts", .Type = "GatewayTest::Contact"}};
     clock->Advance(ForeignPublisher::LookPeriod);
     Service();
-    ASSERT_TRUE(Publisher().Problem());
-    EXPECT_EQ(Publisher().Problem()->reason,
+    ASSERT_TRUE(Publisher().Problem(clock->Monotonic()));
+    EXPECT_EQ(Publisher().Problem(clock->Monotonic())->reason,
               "a program reads `rt/contacts` as `GatewayTest::Contact`, this node writes it as "
               "`GatewayTest::dds_::Contact_`");
     EXPECT_TRUE(Publisher().TakeChange());

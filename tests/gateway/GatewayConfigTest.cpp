@@ -382,6 +382,14 @@ TEST_F(GatewayConfigTest, TheSmallestBudgetThatIsNamedIsTaken)
     EXPECT_NO_THROW(Load("node: a\nradio: {budget: 1000MB/s}\n"));
 }
 
+TEST_F(GatewayConfigTest, NobodyTakesTheClassOfForeignTopicsInCode)
+{
+    GatewayConfig config;
+    config.Node = "a";
+    config.Publish.push_back({.Message = "Pose", .Type = "Uav::Pose", .Class = TrafficClass::Foreign});
+    EXPECT_THROW(ValidateGatewayConfig(config), ConfigError);
+}
+
 TEST_F(GatewayConfigTest, NobodyTakesTheClassOfPresenceInCode)
 {
     GatewayConfig config;

@@ -27,7 +27,7 @@ ROOMS = {
     "paths": ["presence"],
     "mirrors": ["air", "names", "clocks", "wire", "presence", "paths"],
     "queues": ["air", "names", "clocks", "incarnation", "wire", "links", "presence"],
-    "foreign": ["names", "clocks", "mirrors", "queues"],
+    "foreign": ["air", "names", "clocks", "wire", "mirrors", "queues"],
     "report": ["names", "wire", "presence", "paths", "mirrors", "queues"],
     "manager": ["air", "keys", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "paths",
                 "mirrors", "queues", "foreign", "report"],

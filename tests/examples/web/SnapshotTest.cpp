@@ -265,6 +265,7 @@ TEST_F(Snapshot, TellsWhatTheRadioDoesAndWhatIsHeldBack)
     _data.Radio.Air.state = 30;
     _data.Radio.Air.telemetry = 4200;
     _data.Radio.Air.bulk = 10;
+    _data.Radio.Air.foreign = 20;
     _data.Radio.Air.discovery = 210;
     _data.Radio.Streams = {{"Pose", 10, 6.24}};
     _data.Radio.PostsHeldPerS = 3.76;
@@ -280,6 +281,7 @@ TEST_F(Snapshot, TellsWhatTheRadioDoesAndWhatIsHeldBack)
                                     {{"name", "state"}, {"rate", 30}},
                                     {{"name", "telemetry"}, {"rate", 4200}},
                                     {{"name", "bulk"}, {"rate", 10}},
+                                    {{"name", "foreign"}, {"rate", 20}},
                                     {{"name", "discovery"}, {"rate", 210}}}}}));
     EXPECT_EQ(shown["posts_held_per_s"], 3.8);
     EXPECT_EQ(shown["messages_held"], 3);

@@ -125,10 +125,12 @@ TEST_F(AirScheduleTest, ClassesShareByTheirQuanta)
     const StreamId state = Add(TrafficClass::State, 300);
     const StreamId telemetry = Add(TrafficClass::Telemetry, 190);
     const StreamId bulk = Add(TrafficClass::Bulk, 1400);
+    const StreamId foreign = Add(TrafficClass::Foreign, 290);
     SendMany(100'000);
     EXPECT_NEAR(Share(command, bulk), 16.0, 0.1);
     EXPECT_NEAR(Share(state, bulk), 4.0, 0.05);
     EXPECT_NEAR(Share(telemetry, bulk), 1.5, 0.05);
+    EXPECT_NEAR(Share(foreign, bulk), 1.5, 0.05);
 }
 
 TEST_F(AirScheduleTest, TheShareOfWhoHasNothingIsThatOfTheOthers)

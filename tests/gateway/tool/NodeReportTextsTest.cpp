@@ -78,16 +78,25 @@ TEST(LogText, ALineHasATimeALevelAndAText)
     EXPECT_EQ(LogLineOf("word").Text, "word");
 }
 
-TEST(AirText, IsNineNumbers)
+TEST(AirText, IsTenNumbers)
 {
-    const auto air = AirStatusOf("5000 0 1234 1 2 3 4 5 6");
+    const auto air = AirStatusOf("5000 0 1234 1 2 3 4 5 6 7");
     ASSERT_TRUE(air.has_value());
     EXPECT_EQ(air->budget, 5000.0);
     EXPECT_EQ(air->used, 1234.0);
     EXPECT_EQ(air->bulk, 6.0);
+    EXPECT_EQ(air->foreign, 7.0);
     EXPECT_FALSE(AirStatusOf("5000 0 1234 1 2 3 4 5").has_value());
     EXPECT_FALSE(AirStatusOf("").has_value());
     EXPECT_FALSE(AirStatusOf("1 2 3 4 5 6 7 8 nan").has_value());
+}
+
+TEST(AirText, AnOlderNodeHasNoClassForeign)
+{
+    const auto air = AirStatusOf("5000 0 1234 1 2 3 4 5 6");
+    ASSERT_TRUE(air.has_value());
+    EXPECT_EQ(air->bulk, 6.0);
+    EXPECT_EQ(air->foreign, 0.0);
 }
 
 TEST(RoundTrips, AreCountedAndRanked)

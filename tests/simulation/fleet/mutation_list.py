@@ -72,6 +72,8 @@ MUTATIONS = [
              "const WriteResult result = (_writer.*way)(*_local, _time);",
              "for (int i = 0; i < 5; ++i) { static_cast<void>((_writer.*way)(*_local, _time)); } "
              "const WriteResult result = (_writer.*way)(*_local, _time);", THIN),
+    Mutation("foreign topics take no turns", "AirTraffic.cpp", "_foreign.Look(now); while",
+             "_foreign.SendAll(now); while", NODES),
     Mutation("what waits is old", "AirTraffic.cpp", "_schedule.SetLimits(budget, carried, now);",
              "_schedule.SetLimits(budget, carried ? std::optional(100.0 * *carried) : std::nullopt, now);", THIN),
     Mutation("beats wait for ten seconds after a start", "AirTraffic.cpp",

@@ -19,8 +19,8 @@ struct ClassRate
 inline constexpr auto ClassRates = []
 {
     using Gateway::AirStatus;
-    constexpr std::array fields = {&AirStatus::presence, &AirStatus::command, &AirStatus::state,
-                                   &AirStatus::telemetry, &AirStatus::bulk};
+    constexpr std::array fields = {&AirStatus::presence,  &AirStatus::command, &AirStatus::state,
+                                   &AirStatus::telemetry, &AirStatus::bulk,    &AirStatus::foreign};
     static_assert(fields.size() == TrafficClassCount);
     std::array<ClassRate, TrafficClassCount> rates{};
     for (std::size_t i = 0; i < rates.size(); ++i)

@@ -27,14 +27,14 @@ public:
     struct QueueMessage
     {
         std::string_view Node;   // the other one; empty: a program that is no node (foreign topics)
-        std::string_view Queue;  // the destination queue, here or there
+        std::string_view Queue;  // the destination queue, here or there; of a foreign topic the local one
         std::string_view Type;   // IDL name
         // Identifies a sent message among all that this gateway sends; 0 if it was refused.
         std::uint64_t Id = 0;
         // As in a DDS sample, with its encapsulation header.
         std::span<const std::uint8_t> Sample;
     };
-    // A message was accepted for another node.
+    // A message was accepted for another node, or for a foreign topic.
     virtual void Sent(const QueueMessage &message) = 0;
     // A message was not accepted, and why.
     virtual void Refused(const QueueMessage &message, std::string_view reason) = 0;

@@ -92,7 +92,7 @@ def the_channel_is_shown_by_node_and_class(rabit):
         return done if done.returncode == 0 and "uav1" in done.stdout and "uav2" in done.stdout else None
     lines = harness.until(both).stdout.splitlines()
     assert lines[0].split() == ["NODE", "B/s", "BUDGET", "CAPACITY", "DISCOVERY", "PRESENCE", "COMMAND", "STATE",
-                                "TELEMETRY", "BULK"], lines
+                                "TELEMETRY", "BULK", "FOREIGN"], lines
     assert lines[-1].startswith("in all"), lines
 
     def measured():
@@ -100,7 +100,7 @@ def the_channel_is_shown_by_node_and_class(rabit):
         return next((row for row in rows if row["node"] == "uav1" and row["telemetry"]), None)
     uav = harness.until(measured)
     assert keys(uav) == ["node", "bytes_per_s", "budget_bytes_per_s", "capacity_bytes_per_s", "discovery", "presence",
-                         "command", "state", "telemetry", "bulk"], json.dumps(uav)
+                         "command", "state", "telemetry", "bulk", "foreign"], json.dumps(uav)
     assert uav["telemetry"] > 0 and uav["budget_bytes_per_s"] is None, uav
 
 
