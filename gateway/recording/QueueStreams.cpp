@@ -17,6 +17,12 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
+// The word for the other end of a message. No node is called so.
+std::string PeerOf(std::string_view node)
+{
+    return node.empty() ? "(foreign)" : std::string(node);
+}
+
 }  // namespace
 
 QueueStreams::QueueStreams(std::shared_ptr<RecordingTarget> target, const RecordSettings &settings)
@@ -75,8 +81,7 @@ void QueueStreams::Record(const char *what, const QueueMessage &message)
 std::uint32_t QueueStreams::StreamOf(const char *what, const QueueMessage &message)
 {
     RecordingStream stream;
-    stream.Topic = _target->Node() + "/Recorder/" + what + "/" +
-                   (message.Node.empty() ? "(foreign)" : std::string(message.Node)) + "/" +
+    stream.Topic = _target->Node() + "/Recorder/" + what + "/" + PeerOf(message.Node) + "/" +
                    std::string(message.Queue) + "/" + std::string(message.Type);
     const std::lock_guard lock(_mutex);
     if (const auto known = _streams.find(stream.Topic); known != _streams.end())
@@ -105,12 +110,12 @@ void QueueStreams::TellOutcome(std::string_view node, std::string_view queue, st
 {
     if (_settings.BlackBox && _settings.BlackBox->Outcomes && outcome != ToString(QueueOutcome::Delivered))
     {
-        _target->Happened(outcome + ": a message for " + std::string(node) + "/" + std::string(queue));
+        _target->Happened(outcome + ": a message for " + PeerOf(node) + "/" + std::string(queue));
     }
     if (_settings.Queues)
     {
         _target->PutJson(_outcomes, {{"id", std::to_string(id)},
-                                     {"node", node},
+                                     {"node", PeerOf(node)},
                                      {"queue", queue},
                                      {"outcome", outcome},
                                      {"reason", reason}});

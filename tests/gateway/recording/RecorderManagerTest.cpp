@@ -12,8 +12,11 @@
 #include <string>
 #include <thread>
 
+#include "../ForeignNetwork.h"
+#include "../PlainProgram.h"
 #include "../SimulatedFleet.h"
 #include "FakeDisk.h"
+#include "foreign/ForeignReader.h"
 #include "recording/RecordingTarget.h"
 
 namespace Rabit
@@ -74,6 +77,7 @@ protected:
                                  completed, node.Workspace,
                                  std::make_unique<SharedDisk>(Disks[completed.Node]));
                              Recorders[completed.Node] = recorder.get();
+                             Taps[completed.Node] = completed.Tap;
                              node.Reactor.AddManager(std::move(recorder));
                          });
     }
@@ -124,6 +128,7 @@ protected:
     SimulatedFleet Fleet{1};
     std::map<std::string, std::shared_ptr<FakeDisk>> Disks;
     std::map<std::string, RecorderManager *> Recorders;  // of nodes that run
+    std::map<std::string, std::shared_ptr<GatewayTap>> Taps;
 };
 
 std::vector<std::uint32_t> NumbersOf(const Recorded &poses)
@@ -234,6 +239,66 @@ TEST_F(RecorderManagerTest, RecordsQueueMessagesAtBothEndsWithTheirOutcome)
               sent.Sequences[0]);
     const Recorded received = RecordingOf("uav2").at("uav2/Recorder/received/uav1/MissionControl/Uav::Goto");
     EXPECT_EQ(received.Samples, sent.Samples);
+}
+
+TEST_F(RecorderManagerTest, RecordsEachSampleThatAForeignTopicPutsIntoAQueue)
+{
+    const ForeignRule rule{
+        .Topic = "acks", .Type = "Uav::CommandAck", .Local = "Acks", .Each = ForeignRule::Delivery::Queue};
+    const MessageType &type = Uav::CommandAck::IdlType();
+    SimulatedNode &uav1 = AddRecorded(AircraftConfig("uav1"));
+    uav1.AddIdleManager("Acks");
+    // All programs on the simulated network are nodes.
+    Foreign::Network network;
+    Foreign::Session session(network);
+    ForeignReader reader(
+        rule, type, {}, uav1.Workspace, [] {}, nullptr, Taps.at("uav1"));
+    reader.Open(session, 0s);
+    Uav::CommandAck ack;
+    for (std::uint32_t number = 1; number <= 3; ++number)
+    {
+        ack.id = number;
+        network.Deliver(type, ack, number);
+    }
+    reader.Service(0s);
+    const Recorded received = RecordingOf("uav1").at("uav1/Recorder/received/(foreign)/Acks/Uav::CommandAck");
+    EXPECT_EQ(received.Kind, "queue received");
+    ASSERT_EQ(received.Samples.size(), 3U);
+    EXPECT_TRUE(type.Deserialize(received.Samples[2], ack));
+    EXPECT_EQ(ack.id, 3U);
+}
+
+TEST_F(RecorderManagerTest, RecordsEachMessageOfAQueueThatIsWrittenToAForeignTopic)
+{
+    GatewayConfig config = AircraftConfig("uav1");
+    config.Foreign.push_back({.Way = ForeignRule::Direction::Publish,
+                              .Topic = "goals",
+                              .Type = "Uav::Goto",
+                              .Local = "Goals",
+                              .Each = ForeignRule::Delivery::Queue,
+                              .Capacity = 2});
+    const PlainProgram program(Fleet.Network, "goals", "Uav::Goto");
+    SimulatedNode &uav1 = AddRecorded(config);
+    Fleet.RunFor(3s);
+    const auto goal = std::make_shared<Uav::Goto>();
+    EXPECT_TRUE(uav1.Workspace.AddMessageToQueue("Goals", goal));
+    EXPECT_TRUE(uav1.Workspace.AddMessageToQueue("Goals", goal));
+    EXPECT_FALSE(uav1.Workspace.AddMessageToQueue("Goals", goal));
+    Fleet.RunFor(3s);
+    EXPECT_EQ(program.Samples.size(), 2U);
+    const auto topics = RecordingOf("uav1");
+    const Recorded &sent = topics.at("uav1/Recorder/sent/(foreign)/Goals/Uav::Goto");
+    EXPECT_EQ(sent.Samples.size(), 2U);
+    EXPECT_EQ(sent.Kind, "queue sent");
+    EXPECT_EQ(topics.at("uav1/Recorder/refused/(foreign)/Goals/Uav::Goto").Samples.size(), 1U);
+    const Recorded &outcomes = topics.at("uav1/Recorder/Outcomes");
+    ASSERT_EQ(outcomes.Samples.size(), 3U);
+    EXPECT_EQ(outcomes.JsonAt(0).at("outcome"), "refused");
+    EXPECT_EQ(outcomes.JsonAt(0).at("node"), "(foreign)");
+    EXPECT_EQ(outcomes.JsonAt(1).at("outcome"), "delivered");
+    EXPECT_EQ(outcomes.JsonAt(1).at("queue"), "Goals");
+    EXPECT_EQ(static_cast<std::uint32_t>(std::stoull(outcomes.JsonAt(2).at("id").get<std::string>())),
+              sent.Sequences[1]);
 }
 
 TEST_F(RecorderManagerTest, RecordsWhatIsRefusedAtTheCallAndWhy)
