@@ -1,5 +1,5 @@
-// A node that prints the messages and states of its configuration's foreign topics, and posts to these
-// topics. Usage: foreign_node CONFIG, until SIGTERM
+// A node that prints the messages and states of its configuration's foreign topics, and posts and sends to
+// these topics. Usage: foreign_node CONFIG, until SIGTERM
 //   message LOCAL VALUE AGE    queue LOCAL VALUE    foreign TOPIC STATE [REASON]
 #include <rabit/RabitManager.h>
 #include <rabit/RabitMessageQueue.h>
@@ -49,6 +49,12 @@ public:
                 rule.Local.find('/') != std::string::npos)
             {
                 continue;  // a mirrored message, which others post
+            }
+            if (rule.Way == Rabit::ForeignRule::Direction::Publish &&
+                rule.Each == Rabit::ForeignRule::Delivery::Queue)
+            {
+                _written.push_back(rule.Local);
+                continue;
             }
             if (rule.Each == Rabit::ForeignRule::Delivery::Queue)
             {
@@ -131,12 +137,19 @@ private:
             }
             message->PostMessage();
         }
+        for (const std::string &queue : _written)
+        {
+            auto message = std::make_shared<String>();
+            message->data = std::to_string(_number);
+            AddMessageToQueue(queue, message);
+        }
     }
 
     std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
     std::map<std::string, std::shared_ptr<Rabit::RabitMessage>> _read;
     std::map<std::string, std::shared_ptr<Rabit::RabitMessage>> _posted;
     std::map<std::string, std::shared_ptr<Queue>> _queues;
+    std::vector<std::string> _written;  // queues
     std::map<std::string, std::string> _said;
     std::uint64_t _number = 0;
 };

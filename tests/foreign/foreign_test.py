@@ -31,6 +31,7 @@ foreign:
   - {{publish: Setpoint, topic: rt/fmu/in/trajectory_setpoint, type: px4_msgs::msg::TrajectorySetpoint, names: ros2,
      reliability: best_effort}}
   - {{publish: Words, topic: words, type: std_msgs::msg::String, names: ros2}}
+  - {{publish: Orders, topic: orders, type: std_msgs::msg::String, names: ros2, each: queue}}
   - {{subscribe: rt/loud, type: std_msgs::msg::String, as: Loud, names: ros2, reliability: reliable}}
   - {{subscribe: rt/other, type: std_msgs::msg::String, as: Other, names: ros2}}
   - {{subscribe: rt/fmu/out/vehicle_status, type: std_msgs::msg::String, as: Status, names: ros2}}
@@ -41,6 +42,7 @@ TOPICS = ["write:rt/chatter:string:reliable:volatile",
           "write:rt/fmu/out/setpoint:setpoint:best_effort:transient_local",
           "read:rt/fmu/in/trajectory_setpoint:setpoint:best_effort:volatile",
           "read:rt/words:string:reliable:volatile",
+          "read:rt/orders:string:reliable:volatile",
           "write:rt/loud:string:best_effort:volatile",
           "write:rt/other:setpoint:reliable:volatile",
           "write:rt/fmu/out/vehicle_status_v1:string:best_effort:transient_local"]
@@ -99,6 +101,11 @@ class Row:
         self.wait(node, r"message Autopilot/Setpoint \d+ .*", since)
         self.wait(plain, r"got rt/fmu/in/trajectory_setpoint \d+ -5", since)
         self.wait(plain, r"got rt/words \d+", since)
+        when, first = self.wait(plain, r"got rt/orders (\d+)", since)
+        first = int(first.group(1))
+        self.wait(plain, f"got rt/orders {first + 20}", since)
+        values = [int(text.split()[2]) for at, text in plain.lines if at >= when and text.startswith("got rt/orders")]
+        assert values[:21] == list(range(first, first + 21)), values[:21]
 
     @staticmethod
     def nothing_is_dropped(node):
