@@ -22,6 +22,9 @@ constexpr Duration LimitPeriod = std::chrono::milliseconds(100);
 // While links wait for their turn, period of checks for other work of theirs, such as a message that expires.
 constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 
+// Each copy of a beat has room for a body of this size, however many copies there are: 200 bytes on the air.
+constexpr std::size_t SmallBeat = BeatFormat::WithNews + 72;
+
 // Share of a budget that the exchange of keys may take, so that beats get through meanwhile.
 constexpr double KeyShare = 0.5;
 
@@ -238,14 +241,26 @@ void AirTraffic::LookAtBeat(Duration now)
     }
 }
 
-// A beat may be sent as soon as one of the usual size fits. It carries as much as there is room for, and the
-// rest goes with the next beats.
+// A beat may be sent as soon as one of the usual size fits, and a part of the announcement, if one is due. It
+// carries as much as there is room for, and the rest goes with the next beats.
 std::size_t AirTraffic::BeatBytes(Duration now) const
 {
     const AirCost::Readers readers{.Destinations = _presence.BeatCopies()};
-    const std::size_t least = _cost.Of(BeatFormat::Empty, readers);
+    const std::size_t least = _cost.Of(_presence.LeastBeatSize(now), readers);
     return std::min(std::max(static_cast<std::size_t>(_beats.BeatBytes()), least),
                     _cost.Of(_presence.BeatSize(now), readers));
+}
+
+// Returns the room for each copy of a beat. With a limit the copies share the room of one datagram, but each
+// has room for a small beat: a part of the announcement would never fit else. Many copies then take more than
+// a datagram, and the next datagrams wait longer.
+std::size_t AirTraffic::BeatRoom(Duration now)
+{
+    const std::size_t copies = _presence.BeatCopies();
+    const std::size_t most = std::max(_schedule.Budget().LargestDatagram(), AirBudget::SmallestDatagram);
+    const std::size_t least = _cost.Of(std::max(SmallBeat, _presence.LeastBeatSize(now)));
+    const std::size_t all = IsLimited() ? std::max(most, copies * least) : copies * most;
+    return _schedule.Room(all, now) / copies;
 }
 
 void AirTraffic::LookAt(std::size_t publisher, Duration now)
@@ -343,8 +358,7 @@ void AirTraffic::Send(StreamId id, Duration now)
     bool isForeign = false;
     if (id == _beat)
     {
-        const std::size_t room = _schedule.Room(std::max(most, AirBudget::SmallestDatagram), now);
-        SendBeat(_cost.BodyWithin(room / _presence.BeatCopies(), false), now);
+        SendBeat(_cost.BodyWithin(BeatRoom(now), false), now);
     }
     else if (id == _typeTexts)
     {

@@ -99,6 +99,7 @@ private:
     Duration ServeLimited();
     bool IsBeatWorth(Duration now) const;
     std::size_t BeatBytes(Duration now) const;
+    std::size_t BeatRoom(Duration now);
     std::size_t SendBeat(std::size_t most, Duration now);
     void KeepPromise(Duration now);
     void LookAtBeat(Duration now);

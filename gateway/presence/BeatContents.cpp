@@ -3,6 +3,7 @@
 #include <rabit/base/Earliest.h>
 
 #include <algorithm>
+#include <span>
 
 #include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
@@ -24,6 +25,11 @@ std::size_t Fit(std::size_t most, std::size_t size, std::size_t &room)
     const std::size_t count = std::min(most, room / size);
     room -= count * size;
     return count;
+}
+
+std::size_t SizeOfStrains(std::size_t count)
+{
+    return count == 0 ? 0 : BeatFormat::Wanted(count * BeatExtensions::StrainBytes);
 }
 
 }  // namespace
@@ -81,10 +87,30 @@ std::size_t BeatContents::SizeOfFleetSum() const
     return _fleetSumBeats > 0 ? BeatFormat::FleetSum : 0;
 }
 
-std::size_t BeatContents::SizeOfStrains() const
+// Number of strains that a beat with this room reports.
+std::size_t BeatContents::StrainsWithin(std::size_t room) const
 {
-    const std::size_t count = std::min(_strains.size(), BeatExtensions::MostStrains);
-    return count == 0 ? 0 : BeatFormat::Wanted(count * BeatExtensions::StrainBytes);
+    constexpr std::size_t header = BeatFormat::Wanted(0);
+    const std::size_t fit = room > header ? (room - header) / BeatExtensions::StrainBytes : 0;
+    return std::min({_strains.size(), BeatExtensions::MostStrains, fit});
+}
+
+// Room for the smallest part of the announcement that is worth its header, if one is due.
+std::size_t BeatContents::SizeOfLeastPart(Duration now) const
+{
+    if (!_answer.Due() || *_answer.Due() > now || _answer.Left() == 0)
+    {
+        return 0;
+    }
+    return BeatFormat::PartHeader + (std::min(SmallestPart, _answer.Left()) + 3) / 4 * 4;
+}
+
+std::size_t BeatContents::LeastSize(Duration now) const
+{
+    const std::size_t part = SizeOfLeastPart(now);
+    return part == 0 ? BeatFormat::Empty
+                     : BeatFormat::WithNews + SizeOfMarks() + SizeOfProblems(now) + SizeOfFleetSum() +
+                           SizeOfStrains(std::min<std::size_t>(_strains.size(), 1)) + part;
 }
 
 void BeatContents::SetProblems(const ProblemCount &problems)
@@ -104,7 +130,8 @@ std::size_t BeatContents::Size(Duration now) const
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t news = SizeOfMarks() + SizeOfFleetSum() + SizeOfStrains() + SizeOfProblems(now) +
+    const std::size_t news = SizeOfMarks() + SizeOfFleetSum() +
+                             SizeOfStrains(StrainsWithin(BeatFormat::Largest)) + SizeOfProblems(now) +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
                              _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
                              _peers.EchoesDue(now, BeatFormat::MostEchoes) * BeatFormat::Echo +
@@ -125,6 +152,13 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     room -= problems;
     const std::size_t fleetSum = SizeOfFleetSum() <= room ? SizeOfFleetSum() : 0;
     room -= fleetSum;
+    // Receivers take a beat without strains as their end, so at least the worst one is told. An announcement
+    // that never fits would leave this node without commands, so a small part goes before questions.
+    const std::size_t worst = SizeOfStrains(std::min<std::size_t>(_strains.size(), 1));
+    const std::size_t leastPart = SizeOfLeastPart(now);
+    const std::size_t part = worst + leastPart <= room ? leastPart : 0;
+    const std::size_t strains = StrainsWithin(room - part);
+    room -= part + SizeOfStrains(strains);
     AddWants(beat, now, room);
     AddTypes(beat, now, room);
     if (problems > 0)
@@ -133,17 +167,16 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
         _problemBeats = std::max(_problemBeats - 1, 0);
         _problemsSaid = now;
     }
-    // Before all that may fill the beat: receivers take a beat without strains as their end.
-    if (SizeOfStrains() > 0 && SizeOfStrains() <= room)
+    if (strains > 0)
     {
-        BeatExtensions::Say(beat, _strains);
-        room -= SizeOfStrains();
+        BeatExtensions::Say(beat, std::span<const LinkStrain>(_strains).first(strains));
     }
     Gateway::BeatNews &news = NewsOf(beat);
     news.echoes = _peers.NextEchoes(now, BeatFormat::MostEchoes, room / BeatFormat::Echo);
     room -= news.echoes.size() * BeatFormat::Echo;
     news.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
     room -= news.delays.size() * BeatFormat::Delay;
+    room += part;
     AddPart(beat, now, room);
     AddStates(beat, room);
     if (_isTool)

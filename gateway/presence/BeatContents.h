@@ -22,9 +22,10 @@
 namespace Rabit
 {
 
-// Collects the contents of this node's beats and fits them in: the number of problems first, then questions,
-// strains of links, echoes and delays, a requested part of the announcement, and the versions of States.
-// Contents that do not fit follow in the next beats. While another node has this node's name, a beat without
+// Collects the contents of this node's beats and fits them in: the number of problems first, then strains of
+// links, questions, echoes and delays, a requested part of the announcement, and the versions of States. Room
+// for the worst strain and for a small part of the announcement is kept before questions are added. Contents
+// that do not fit follow in the next beats. While another node has this node's name, a beat without
 // such a part tells now and then where this node runs. Used by the gateway's thread only.
 class BeatContents
 {
@@ -61,8 +62,8 @@ public:
     // This node plays a recording, and its beats say so.
     void BeReplay() { _isReplay = true; }
 
-    // Sets the troubles of this node's links, the worst first. From now on each beat with room for them
-    // reports them.
+    // Sets the troubles of this node's links, the worst first. From now on each beat reports as many of them
+    // as fit.
     void SetStrains(std::vector<LinkStrain> strains) { _strains = std::move(strains); }
 
     // Sets the nodes that are heard by this path and by no better one, by their tags, which each beat from
@@ -92,6 +93,8 @@ public:
 
     // Largest size of the next beat's body, in bytes.
     std::size_t Size(Duration now) const;
+    // Size of a body in which a part of the announcement fits, if one is due; else that of an empty beat.
+    std::size_t LeastSize(Duration now) const;
     // Fills the beat with the contents that are due now and fit into a body of `most` bytes.
     void Fill(Gateway::Beat &beat, Duration now, std::size_t most);
 
@@ -102,7 +105,8 @@ private:
     void AddStates(Gateway::Beat &beat, std::size_t &room);
     std::size_t SizeOfMarks() const;
     std::size_t SizeOfFleetSum() const;
-    std::size_t SizeOfStrains() const;
+    std::size_t StrainsWithin(std::size_t room) const;
+    std::size_t SizeOfLeastPart(Duration now) const;
     std::size_t SizeOfProblems(Duration now) const;
     std::size_t SizeOfPart(Duration now, std::size_t room) const;
     bool IsPlaceDue(Duration now) const;

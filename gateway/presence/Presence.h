@@ -120,6 +120,8 @@ public:
     Duration BeatPromised() const { return _pace.Promised(); }
     // Largest size of the next beat, in bytes of its body (CDR without the encapsulation).
     std::size_t BeatSize(Duration now) const { return _contents.Size(now); }
+    // BeatContents::LeastSize
+    std::size_t LeastBeatSize(Duration now) const { return _contents.LeastSize(now); }
     // Number of datagrams that a beat takes.
     std::size_t BeatCopies() const;
     // Number of sessions that receive a sample sent to that node alone (TransportWriter::WriteTo): two while

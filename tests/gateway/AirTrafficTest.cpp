@@ -191,6 +191,22 @@ TEST_F(AirTrafficTest, NoSecondHasMoreThanTheBudgetWhenBeatsHaveMuchToSay)
     EXPECT_LE(static_cast<double>(spending.MostInASecond()), 1.05 * 1500);
 }
 
+// Each of its beats goes to six nodes, a copy to each.
+TEST_F(AirTrafficTest, ANodeThatSendsByUnicastIsAnnouncedThroughASmallBudgetToo)
+{
+    GatewayConfig config = WithBudget(AircraftConfig("uav1"), 1500);
+    config.Multicast = false;
+    config.Peers = {"10.0.0.2"};
+    AddAircraft(config).AddIdleManager("MissionControl");
+    SimulatedNode &ground = fleet.Add(GroundConfig());
+    for (int i = 2; i <= 6; ++i)
+    {
+        fleet.Add(AircraftConfig("uav" + std::to_string(i)));
+    }
+    fleet.RunFor(60s);
+    EXPECT_TRUE(ground.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
+}
+
 TEST_F(AirTrafficTest, TheNewestPostIsSentAndTheOthersAreCounted)
 {
     AddAircraft(WithBudget(AircraftConfig("uav1")));

@@ -219,17 +219,53 @@ TEST_F(BeatContentsTest, ProblemsAreSaidInTheSmallestBeatOfABudgetBeforeAnything
     EXPECT_EQ(BeatExtensions::ProblemsIn(beat), problems);
 }
 
-TEST_F(BeatContentsTest, StrainsGoBeforeStatesAndWaitForRoom)
+TEST_F(BeatContentsTest, TheWorstStrainsGoBeforeStatesAndTheOthersWaitForRoom)
 {
     BeginLongAgo(100, 3);
     contents.SetStrains(std::vector<LinkStrain>(9));
     const std::size_t strains = BeatFormat::Wanted(BeatExtensions::MostStrains * BeatExtensions::StrainBytes);
-    const Gateway::Beat without = Next(1s, BeatFormat::WithNews + strains - 1);
-    EXPECT_THAT(BeatExtensions::StrainsIn(without), IsEmpty());
-    EXPECT_THAT(NewsOf(without).states, SizeIs(3));
+    const Gateway::Beat first = Next(1s, BeatFormat::WithNews + strains - 1);
+    EXPECT_THAT(BeatExtensions::StrainsIn(first), SizeIs(BeatExtensions::MostStrains - 1));
+    EXPECT_THAT(NewsOf(first).states, SizeIs(1));
     const Gateway::Beat with = Next(2s, BeatFormat::WithNews + strains + BeatFormat::State);
     EXPECT_THAT(BeatExtensions::StrainsIn(with), SizeIs(BeatExtensions::MostStrains));
     EXPECT_THAT(NewsOf(with).states, SizeIs(1));
+}
+
+// Receivers take a beat without strains as their end.
+TEST_F(BeatContentsTest, StrainsAreSaidInASmallBeatThatQuestionsCouldFill)
+{
+    BeginLongAgo(100, 0);
+    for (int i = 0; i < 20; ++i)
+    {
+        Hear("uav" + std::to_string(i), 1s, 99);
+    }
+    contents.SetStrains(std::vector<LinkStrain>(2));
+    const Gateway::Beat beat = Next(2s, BeatFormat::WithNews + BeatFormat::MostWants * BeatFormat::Wanted(0));
+    EXPECT_THAT(BeatExtensions::StrainsIn(beat), SizeIs(2));
+    EXPECT_GT(NewsOf(beat).wants.size(), 1u) << "questions take what is left";
+}
+
+TEST_F(BeatContentsTest, TheLeastBeatHasAPartOfTheAnnouncementThatIsDueHoweverMuchElseThereIsToSay)
+{
+    Begin(4000, 10);
+    for (int i = 0; i < 20; ++i)
+    {
+        Hear("uav" + std::to_string(i), 1s, 99);
+    }
+    contents.SetProblems({.Count = 2, .Digest = 7});
+    contents.SetStrains(std::vector<LinkStrain>(3));
+    const Gateway::Beat beat = Next(2s, contents.LeastSize(2s));
+    ASSERT_THAT(NewsOf(beat).parts, SizeIs(1));
+    EXPECT_THAT(NewsOf(beat).parts[0].bytes, SizeIs(64));
+    EXPECT_THAT(BeatExtensions::StrainsIn(beat), SizeIs(1));
+    EXPECT_TRUE(BeatExtensions::ProblemsIn(beat).has_value());
+}
+
+TEST_F(BeatContentsTest, TheLeastBeatIsEmptyWhileNoPartOfTheAnnouncementIsDue)
+{
+    BeginLongAgo(100, 10);
+    EXPECT_EQ(contents.LeastSize(2s), BeatFormat::Empty);
 }
 
 TEST_F(BeatContentsTest, TheFirstBeatOfALifeCarriesTheAnnouncement)

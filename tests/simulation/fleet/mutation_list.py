@@ -66,8 +66,7 @@ MUTATIONS = [
     Mutation("what goes to several sessions of a node counts as one datagram", "LinkStreams.cpp",
              "* _copies(link.Destination)", "", THIN),
     Mutation("a beat says all that it has, whatever there is room for", "AirTraffic.cpp",
-             "_schedule.Room(std::max(most, AirBudget::SmallestDatagram), now);",
-             "std::max(most, AirBudget::SmallestDatagram);", THIN),
+             "_schedule.Room(all, now) / copies;", "all / copies;", THIN),
     Mutation("each value is written again and again", "TopicPublisher.cpp",
              "const WriteResult result = (_writer.*way)(*_local, _time);",
              "for (int i = 0; i < 5; ++i) { static_cast<void>((_writer.*way)(*_local, _time)); } "
