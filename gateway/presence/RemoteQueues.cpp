@@ -7,11 +7,11 @@ void RemoteQueues::Update(const PeerTable::Peer &peer)
 {
     const std::lock_guard lock(_mutex);
     const auto found = _peers.find(peer.Node);
-    if (peer.Offers)
+    if (peer.Offers || found == _peers.end() || peer.Incarnation > found->second.Incarnation)
     {
         _peers[peer.Node] = peer;
     }
-    else if (found != _peers.end())
+    else
     {
         found->second.State = peer.State;
     }
@@ -20,7 +20,8 @@ void RemoteQueues::Update(const PeerTable::Peer &peer)
 bool RemoteQueues::Knows(const std::string &node) const
 {
     const std::lock_guard lock(_mutex);
-    return _peers.count(node) > 0;
+    const auto found = _peers.find(node);
+    return found != _peers.end() && found->second.Offers;
 }
 
 void RemoteQueues::Forget(const std::string &node)
@@ -42,17 +43,25 @@ RemoteQueues::Answer RemoteQueues::Ask(const std::string &node, const std::strin
     return {acceptance, WhyNotAccepted(acceptance, found->second, queue, type)};
 }
 
-std::vector<std::string> RemoteQueues::LiveNodesAccepting(const std::string &queue, const std::string &type,
-                                                          std::uint64_t definition) const
+RemoteQueues::LiveNodes RemoteQueues::LiveNodesFor(const std::string &queue, const std::string &type,
+                                                   std::uint64_t definition) const
 {
     const std::lock_guard lock(_mutex);
-    std::vector<std::string> nodes;
+    LiveNodes nodes;
     for (const auto &[name, peer] : _peers)
     {
-        if (peer.State != Gateway::NodeState::LOST &&
-            AcceptanceOf(peer, queue, type, definition, _ownNode) == QueueAcceptance::Accepted)
+        if (peer.State == Gateway::NodeState::LOST)
         {
-            nodes.push_back(name);
+            continue;
+        }
+        const QueueAcceptance acceptance = AcceptanceOf(peer, queue, type, definition, _ownNode);
+        if (acceptance == QueueAcceptance::Accepted)
+        {
+            nodes.Accepting.push_back(name);
+        }
+        else if (acceptance == QueueAcceptance::NotAnnounced)
+        {
+            nodes.NotAnnounced.push_back(name);
         }
     }
     return nodes;

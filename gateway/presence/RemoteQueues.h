@@ -28,17 +28,23 @@ public:
     // `ownNode` is the sending node.
     explicit RemoteQueues(std::string ownNode) : _ownNode(std::move(ownNode)) {}
 
-    // Copies the node's announcement; does nothing if it has not announced itself yet.
+    // Copies the node's announcement. A node that has none is kept as one of which nothing is known yet. If
+    // it had one in an earlier incarnation, that one is over: the table of peers keeps it if the digest is
+    // the same. In the same incarnation the former announcement holds until the next one has come.
     void Update(const PeerTable::Peer &peer);
     void Forget(const std::string &node);
     // True if the node has announced itself.
     bool Knows(const std::string &node) const;
     Answer Ask(const std::string &node, const std::string &queue, const std::string &type,
                std::uint64_t definition) const;
-    // Nodes, by name, that are not LOST and accept that type in that queue.
-    std::vector<std::string> LiveNodesAccepting(const std::string &queue, const std::string &type,
-                                                std::uint64_t definition) const;
-    // After LiveNodesAccepting has returned none: why a live node does not accept that type in its queue of
+    // Nodes that are not LOST, by name.
+    struct LiveNodes
+    {
+        std::vector<std::string> Accepting;     // that type in that queue
+        std::vector<std::string> NotAnnounced;  // they may accept it: their announcement has not arrived
+    };
+    LiveNodes LiveNodesFor(const std::string &queue, const std::string &type, std::uint64_t definition) const;
+    // After LiveNodesFor has returned none: why a live node does not accept that type in its queue of
     // that name. UnknownNode, without a reason, if none has a queue of that name.
     Answer WhyNoneAccepts(const std::string &queue, const std::string &type, std::uint64_t definition) const;
 

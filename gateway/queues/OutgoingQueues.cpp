@@ -107,8 +107,10 @@ std::vector<std::string> OutgoingQueues::Known(const std::string &queueName,
     if (node == "*")
     {
         const MessageType *type = MessageTypeRegistry::Of(message);
-        known =
-            type == nullptr ? known : _remote.LiveNodesAccepting(queue, type->Name(), DefinitionHash(*type));
+        if (type != nullptr)
+        {
+            known = _remote.LiveNodesFor(queue, type->Name(), DefinitionHash(*type)).Accepting;
+        }
         for (std::string &name : known)
         {
             name += "/" + queue;
@@ -130,9 +132,8 @@ void OutgoingQueues::TakenElsewhere(const std::string &queueName)
 bool OutgoingQueues::ForwardToAll(const std::string &queue, const MessageType &type,
                                   const LinkPayload &payload, const Receipt &receipt)
 {
-    const std::vector<std::string> nodes =
-        _remote.LiveNodesAccepting(queue, type.Name(), DefinitionHash(type));
-    if (nodes.empty())
+    const RemoteQueues::LiveNodes nodes = _remote.LiveNodesFor(queue, type.Name(), DefinitionHash(type));
+    if (nodes.Accepting.empty() && nodes.NotAnnounced.empty())
     {
         Begin(receipt, 1);
         // No such queue anywhere is no problem: `*` names no node that must be there.
@@ -142,12 +143,20 @@ bool OutgoingQueues::ForwardToAll(const std::string &queue, const MessageType &t
         return Refuse("*", queue, answer.What, answer.Reason.empty() ? "" : reason + ": " + answer.Reason,
                       receipt);
     }
-    _refusals.Forgive("*", queue);
-    Begin(receipt, nodes.size());
-    bool all = true;
-    for (const std::string &node : nodes)
+    if (!nodes.Accepting.empty())
     {
-        all = ForwardTo(node, queue, type, payload, receipt) && all;
+        _refusals.Forgive("*", queue);
+    }
+    Begin(receipt, nodes.Accepting.size() + nodes.NotAnnounced.size());
+    bool all = true;
+    // A node that has not announced itself refuses, with its reason: a caller must not take it for one that
+    // has no such queue.
+    for (const std::vector<std::string> *names : {&nodes.Accepting, &nodes.NotAnnounced})
+    {
+        for (const std::string &node : *names)
+        {
+            all = ForwardTo(node, queue, type, payload, receipt) && all;
+        }
     }
     return all;
 }

@@ -35,7 +35,7 @@ public:
     bool Handles(const std::string &queueName) const override;
     bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
                  const std::shared_ptr<RabitQueueReceipt> &receipt) override;
-    // The nodes that have announced themselves in this network; for `*` those that Forward would choose.
+    // The nodes that have announced themselves in this network; for `*` those that accept the message.
     std::vector<std::string> Known(const std::string &queueName, const RabitMessage &message) const override;
     void TakenElsewhere(const std::string &queueName) override;
 

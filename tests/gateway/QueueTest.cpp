@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "HandNode.h"
 #include "SimulatedFleet.h"
 
 namespace Rabit
@@ -273,6 +274,26 @@ TEST_F(QueueTest, AStarThatNobodyHasAQueueForIsNoProblemButOneOfAnotherTypeIs)
         ground.Problems(),
         HasSubstr("send */MissionControl: no live node accepts `Uav::Pose` for `MissionControl`: queue "
                   "`MissionControl` of uav1 does not accept `Uav::Pose`"));
+}
+
+// Its announcement is under way, so nobody knows whether it has the queue.
+TEST_F(QueueTest, AStarTellsOfALiveNodeWhoseAnnouncementHasNotArrived)
+{
+    HandNode second(fleet.Network, "uav2", 7);
+    fleet.RunFor(1s);
+    Gateway::Beat beat = second.Beat();
+    beat.offers = 99;
+    second.Write(beat);
+    fleet.RunFor(200ms);
+    const auto receipt = std::make_shared<RabitQueueReceipt>();
+    EXPECT_FALSE(
+        ground.Workspace.AddMessageToQueue("*/MissionControl", std::make_shared<Uav::Goto>(), receipt));
+    fleet.RunFor(1500ms);
+    EXPECT_EQ(receipt->GetCounts().Delivered, 1u);
+    EXPECT_EQ(receipt->GetCounts().Refused, 1u);
+    EXPECT_EQ(Take(mission).size(), 1u);
+    EXPECT_THAT(ground.Problems(),
+                HasSubstr("send uav2/MissionControl: no announcement of uav2 has arrived yet"));
 }
 
 TEST_F(QueueTest, ARefusalIsNoProblemAnyMoreAfterAMinute)

@@ -221,7 +221,7 @@ TEST_F(ToolTest, AsksForNoOtherAnnouncementsThanItIsToldTo)
     SimulatedNode &tool = fleet.Add(config);
     fleet.RunFor(5s);
     EXPECT_EQ(Send(tool, "uav1/MissionControl"), QueueOutcome::Refused);
-    EXPECT_THAT(tool.Problems(), HasSubstr("no node `uav1` has announced itself"));
+    EXPECT_THAT(tool.Problems(), HasSubstr("no announcement of uav1 has arrived yet"));
     EXPECT_THAT(tool.Problems(), Not(HasSubstr("uav2")));
 }
 
