@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 namespace Rabit
@@ -9,9 +10,10 @@ namespace Rabit
 // The state of one subscription for one node.
 struct Reception
 {
-    std::uint64_t Received = 0;  // samples posted
-    int MatchedWriters = 0;      // DDS writers that match the subscription, of all nodes together
-    std::string LocalProblem;    // why samples cannot be posted here; empty if they can
+    // The incarnation of the node whose sample was posted last; empty: none was.
+    std::optional<std::uint64_t> PostedOf;
+    int MatchedWriters = 0;    // DDS writers that match the subscription, of all nodes together
+    std::string LocalProblem;  // why samples cannot be posted here; empty if they can
 };
 
 }  // namespace Rabit

@@ -198,7 +198,7 @@ Reception Subscriptions::ReceptionFrom(const std::string &node, const SubscribeR
     {
         if (subscription.Rule == &rule)
         {
-            reception.Received = subscription.Subscriber->ReceivedFrom(node);
+            reception.PostedOf = subscription.Subscriber->PostedOf(node);
             reception.MatchedWriters = subscription.Subscriber->MatchedWriters();
             reception.LocalProblem = subscription.Subscriber->LocalProblem(node);
         }

@@ -247,6 +247,10 @@ void TopicSubscriber::Count(Source &source, Outcome outcome, const SampleInfo &i
     counters.repeated += outcome == Outcome::Repeated ? 1 : 0;
     counters.undecodable += outcome == Outcome::Undecodable ? 1 : 0;
     counters.refused += outcome == Outcome::Refused || outcome == Outcome::NotPostable ? 1 : 0;
+    if (outcome == Outcome::Posted)
+    {
+        source.PostedOf = info.Incarnation;
+    }
     if (outcome != Outcome::Refused)
     {
         const bool first = !source.Taken || source.Taken->Incarnation != info.Incarnation;
@@ -255,11 +259,11 @@ void TopicSubscriber::Count(Source &source, Outcome outcome, const SampleInfo &i
     }
 }
 
-std::uint64_t TopicSubscriber::ReceivedFrom(const std::string &node) const
+std::optional<std::uint64_t> TopicSubscriber::PostedOf(const std::string &node) const
 {
     const std::lock_guard lock(_mutex);
     const auto found = _sources.find(node);
-    return found == _sources.end() ? 0 : found->second->Counters.received;
+    return found == _sources.end() ? std::nullopt : found->second->PostedOf;
 }
 
 std::vector<Gateway::TopicStatus> TopicSubscriber::Status() const

@@ -61,8 +61,9 @@ public:
     // The source time of the newest accepted sample of that incarnation of a node: posted, or useless here
     // however often it comes.
     std::optional<std::int64_t> TakenIn(const std::string &node, std::uint64_t incarnation) const;
-    // Samples of that node that were posted, and DDS writers that match now.
-    std::uint64_t ReceivedFrom(const std::string &node) const;
+    // The incarnation of that node whose sample was posted last; empty: none was.
+    std::optional<std::uint64_t> PostedOf(const std::string &node) const;
+    // DDS writers that match now.
     int MatchedWriters() const;
     // The node is forgotten: so are its counters and its offer. Its local message leaves the workspace,
     // unless somebody has registered it besides.
@@ -93,8 +94,9 @@ private:
         std::unique_ptr<RabitMessage> Scratch;
         std::string Problem;
         std::optional<Sample> Posted;
-        std::optional<Sample> Taken;      // guarded, as the counters are
-        std::optional<QosProfile> Offer;  // likewise
+        std::optional<Sample> Taken;            // guarded, as the counters are
+        std::optional<std::uint64_t> PostedOf;  // incarnation of the newest posted sample; likewise
+        std::optional<QosProfile> Offer;        // likewise
         LogThrottle Log;
     };
 

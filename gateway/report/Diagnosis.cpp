@@ -87,7 +87,9 @@ std::string WhyNoData(const Wanted &wanted, const PeerTable::Peer &peer, std::ch
     {
         return reception.LocalProblem;
     }
-    if (reception.Received > 0 || now - peer.OffersSince < Patience || now - peer.FirstHeard < Patience)
+    // Samples of a former incarnation do not show that those of the present one come.
+    if (reception.PostedOf == peer.Incarnation || now - peer.OffersSince < Patience ||
+        now - peer.FirstHeard < Patience)
     {
         return "";
     }

@@ -107,7 +107,7 @@ TEST_F(DiagnosisTest, FromEverybodyNobodyNeedPublishWhatSomebodyDoes)
     peers.OnBeat(BeatOf("uav1.vision", &camera));
     Offer("Pose", "Uav::Pose", "telemetry", 11);
     Hear();
-    reception.Received = 1;
+    reception.PostedOf = 5;
     EXPECT_EQ(Problem(1s), "uav1.vision: uav1.vision does not publish `Pose`; it publishes nothing");
     rule.From = {"*"};
     EXPECT_EQ(Problem(1s), "0 problems");
@@ -182,8 +182,20 @@ TEST_F(DiagnosisTest, NothingIsWrongWhenDataComes)
     Offer("Pose", "Uav::Pose", "telemetry", 11);
     Hear();
     reception.MatchedWriters = 1;
-    reception.Received = 1;
+    reception.PostedOf = 5;
     EXPECT_EQ(Problem(60s), "0 problems");
+}
+
+TEST_F(DiagnosisTest, DataOfAFormerIncarnationDoesNotHideThatNothingComes)
+{
+    Offer("Pose", "Uav::Pose", "telemetry", 11);
+    Hear();
+    reception.MatchedWriters = 1;
+    reception.PostedOf = 4;
+    EXPECT_EQ(Problem(2s), "0 problems") << "it has just come";
+    EXPECT_EQ(
+        Problem(2500ms),
+        "uav1: nothing has been received: uav1 has posted no `Pose` yet, or its samples do not get through");
 }
 
 TEST_F(DiagnosisTest, ALostNodeIsNoProblemOfTheSubscription)

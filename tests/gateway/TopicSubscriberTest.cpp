@@ -193,6 +193,16 @@ TEST_F(TopicSubscriberTest, TheTapIsToldOfEachPostedSampleAndOfNoOther)
 }
 
 // The transport's thread must go on: it brings the beats of other nodes.
+TEST_F(TopicSubscriberTest, TellsOfWhichIncarnationThePostedSamplesWere)
+{
+    EXPECT_EQ(subscriber.PostedOf("uav1"), std::nullopt);
+    Hear(1, 1'000'000'000);
+    EXPECT_EQ(subscriber.PostedOf("uav1"), std::uint64_t{5});
+    origins.Set("uav1", {.Incarnation = 6, .Source = {}, .SourceToWall = 0s});
+    Hear(2, 2'000'000'000);
+    EXPECT_EQ(subscriber.PostedOf("uav1"), std::uint64_t{5}) << "a sample of the former one is refused";
+}
+
 TEST_F(TopicSubscriberTest, ASlowHandlerHoldsUpNeitherTheTransportNorWhatComesNext)
 {
     RabitHandlerThread handlers;
@@ -219,7 +229,7 @@ TEST_F(TopicSubscriberTest, ASlowHandlerHoldsUpNeitherTheTransportNorWhatComesNe
     Hear(2, 2'000'000'000);
     Hear(3, 3'000'000'000);
     EXPECT_EQ(Posted(), 3);
-    EXPECT_EQ(other.ReceivedFrom("uav1"), 3u);
+    EXPECT_EQ(other.Status().at(0).received, 3u);
     mayReturn.set_value();
     handlers.Stop();
     EXPECT_EQ(seen, (std::vector<std::uint32_t>{3, 3}));
