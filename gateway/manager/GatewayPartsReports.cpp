@@ -1,4 +1,5 @@
-// The reports of a gateway: Gateway/Fleet, its problems and its log, and answers to nodes that request reports.
+// The reports of a gateway: Gateway/Fleet, its problems and its log, and answers to nodes that request
+// reports.
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/GatewayTap.h>
 
@@ -193,8 +194,19 @@ void GatewayManager::Parts::AddProblems(Duration now, Gateway::Fleet &fleet) con
     {
         path->AddProblems(fleet, now);
     }
-    for (const TopicPublisher &publisher : _paths.front()->Publishers())
+    for (std::size_t i = 0; i < _paths.front()->Publishers().size(); ++i)
     {
+        const TopicPublisher &publisher = _paths.front()->Publishers()[i];
+        const bool isUnwritable =
+            std::any_of(_paths.begin(), _paths.end(),
+                        [i](const auto &path) { return path->Publishers()[i].IsUnwritable(); });
+        if (isUnwritable)
+        {
+            fleet.problems.push_back({"publish " + publisher.Rule().Message, "",
+                                      "the last post of `" + publisher.Rule().Message +
+                                          "` cannot be written: it does not fit `" + publisher.Rule().Type +
+                                          "` or is too large; other nodes keep the one before"});
+        }
         if (!publisher.IsAttached())
         {
             fleet.problems.push_back({"publish " + publisher.Rule().Message, "",

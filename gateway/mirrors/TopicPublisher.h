@@ -49,6 +49,9 @@ public:
     // The version of the State written last, which beats carry (StateVersion). None: nothing was written, the
     // last post can never be written, or it is telemetry.
     std::uint32_t Version() const { return _version; }
+    // True if the last post that was to be written never can be: a bounded string in it is too long, for
+    // instance. Others keep the value before it.
+    bool IsUnwritable() const { return _everWritten && !_writtenTime; }
     // A node lacks the State of that version.
     void AskedFor(Duration now);
     // Fetches and writes a due value. Returns when to call again even if nothing is posted (Duration::max():

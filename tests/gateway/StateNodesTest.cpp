@@ -18,6 +18,31 @@ namespace
 using namespace std::chrono_literals;
 using std::chrono::nanoseconds;
 
+// A State that cannot be written has no version, which reads as "never written".
+TEST(StateThatCannotBeWritten, IsAProblemUntilAnotherPostIsWritten)
+{
+    SimulatedFleet fleet;
+    GatewayConfig config = AircraftConfig("uav1");
+    config.Publish.push_back({.Message = "Order", .Type = "Uav::Goto"});
+    SimulatedNode &uav = fleet.Add(config);
+    fleet.Add(GroundConfig());
+    const auto order = uav.Register<Uav::Goto>("Order");
+    order->PostMessage();
+    fleet.RunFor(3s);
+    EXPECT_THAT(uav.Problems(), ::testing::Not(::testing::HasSubstr("publish Order")));
+    order->reply_to = std::string(65, 'x');
+    order->PostMessage();
+    fleet.RunFor(3s);
+    EXPECT_THAT(
+        uav.Problems(),
+        ::testing::HasSubstr("publish Order: the last post of `Order` cannot be written: it "
+                             "does not fit `Uav::Goto` or is too large; other nodes keep the one before"));
+    order->reply_to.clear();
+    order->PostMessage();
+    fleet.RunFor(3s);
+    EXPECT_THAT(uav.Problems(), ::testing::Not(::testing::HasSubstr("publish Order")));
+}
+
 // Nodes that each publish some States `S0`, `S1` ... and want those of all others.
 class StateNodesTest : public ::testing::Test
 {

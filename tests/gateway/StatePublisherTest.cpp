@@ -106,6 +106,22 @@ TEST_F(StatePublisherTest, OneThatIsAskedForIsWrittenAgainAsTheSame)
     EXPECT_EQ(Run(1min), 0) << "once for each time that it is asked for";
 }
 
+TEST_F(StatePublisherTest, ThatTheLastPostCanNeverBeWrittenIsToldUntilAnotherOneIsWritten)
+{
+    EXPECT_FALSE(publisher.IsUnwritable()) << "nothing was posted";
+    Post();
+    EXPECT_FALSE(publisher.IsUnwritable());
+    network.Result = WriteResult::Failed;
+    Post();
+    EXPECT_TRUE(publisher.IsUnwritable());
+    network.Result = WriteResult::TimedOut;
+    Post();
+    EXPECT_FALSE(publisher.IsUnwritable()) << "it is tried again";
+    network.Result = WriteResult::Ok;
+    Run(1s);
+    EXPECT_FALSE(publisher.IsUnwritable());
+}
+
 TEST_F(StatePublisherTest, AllWhoAskTogetherAreAnsweredOnce)
 {
     Post();
