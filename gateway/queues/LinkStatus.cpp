@@ -27,7 +27,7 @@ std::vector<Gateway::LinkStatus> Outbound(const LinkNode &links)
     return status;
 }
 
-std::vector<Gateway::InboundStatus> Inbound(const LinkNode &links, const IncomingQueues &incoming)
+std::vector<Gateway::InboundStatus> Inbound(const LinkNode &links, const IncomingQueues & /*incoming*/)
 {
     std::vector<Gateway::InboundStatus> status;
     links.VisitReceivers(
@@ -40,7 +40,7 @@ std::vector<Gateway::InboundStatus> Inbound(const LinkNode &links, const Incomin
             row.expired = counters.Skipped;
             row.undeliverable =
                 counters.RefusedUnknown + counters.RefusedWrongType + counters.RefusedUndecodable;
-            row.held_back = incoming.Room(queue) == 0;
+            row.held_back = counters.HeldBack;
         });
     return status;
 }

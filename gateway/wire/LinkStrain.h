@@ -13,8 +13,8 @@ struct LinkStrain
     {
         Filling = 1,  // the sender's outbox for that node fills, or was full lately
         InDoubt = 2,  // that node restarted lately before it acknowledged
-        HeldBack = 3  // the sender of the beat is the receiver: a queue of it is full, and messages of that
-                      // node wait
+        HeldBack = 3  // the sender of the beat is the receiver: messages of that node wait, since a queue of
+                      // it is full or there is no memory for them
     };
 
     std::uint32_t Node = 0;  // tag of the other node

@@ -186,6 +186,28 @@ TEST_F(QueueTest, AFullRemoteQueueHoldsTheStreamBackWithoutLoss)
     EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").outbox, 0u);
 }
 
+TEST_F(QueueTest, AFullQueueHoldsBackOnlyTheNodesWhoseMessagesWait)
+{
+    GatewayConfig config = GroundConfig();
+    config.Node = "ground2";
+    SimulatedNode &second = fleet.Add(config);
+    fleet.RunFor(2s);
+    EXPECT_TRUE(second.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>()));
+    fleet.RunFor(1s);
+    for (std::uint32_t i = 1; i <= 1100; ++i)
+    {
+        EXPECT_TRUE(SendGoto(i));
+        fleet.RunFor(1ms);
+    }
+    fleet.RunFor(5s);
+    const Gateway::Fleet seen = uav.Fleet();
+    ASSERT_EQ(seen.inbound.size(), 2u);
+    for (const Gateway::InboundStatus &stream : seen.inbound)
+    {
+        EXPECT_EQ(stream.held_back, stream.node == "ground") << stream.node;
+    }
+}
+
 TEST_F(QueueTest, AFullOutboxRefusesAtOnceAndCounts)
 {
     SimulatedFaults cut;

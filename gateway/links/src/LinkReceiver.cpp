@@ -81,6 +81,7 @@ void LinkReceiver::DropSession()
     _assembly.Drop();
     _unacknowledged = 0;
     _unacknowledgedBytes = 0;
+    _waits = false;
     _heldBack = false;
     _toldCredit = 0;
     _noMemory = false;
@@ -101,6 +102,7 @@ void LinkReceiver::SourceEnded()
     {
         _assembly.Drop();
         _noMemory = false;
+        _waits = false;
     }
 }
 
@@ -235,6 +237,7 @@ void LinkReceiver::Advance(const ReceivedPart &part, OutcomeHistory::Entry entry
     {
         _history.Set(_cumulative + 1, entry);
     }
+    _waits = false;
     _heldBack = false;
     _noMemory = false;
     _givenOut = 0;
@@ -332,7 +335,7 @@ void LinkReceiver::Acknowledged(const LinkAck &ack)
 LinkReceiverCounters LinkReceiver::Counters() const
 {
     LinkReceiverCounters counters = _counters;
-    counters.HeldBack = HasSession() && _heldBack;
+    counters.HeldBack = HasSession() && _waits;
     counters.KeptBytes = _kept.Bytes();
     counters.AssemblyBytes = _assembly.Size();
     return counters;
@@ -344,8 +347,8 @@ std::string LinkReceiver::Describe() const
     out << "from " << _source << '/' << _queue << ": link " << _link << " session " << _senderLife << " cum "
         << _cumulative << " oldest " << _oldest << " opened at " << _openedAt.count() << " ack at "
         << _ackAt.count() << " unacknowledged " << _unacknowledged << (_heldBack ? " held back" : "")
-        << " kept " << _kept.Bytes() << " assembly " << _assembly.Size() << " types " << _types.size()
-        << " delivered " << std::hex;
+        << (_waits ? " waits" : "") << " kept " << _kept.Bytes() << " assembly " << _assembly.Size()
+        << " types " << _types.size() << " delivered " << std::hex;
     for (const std::uint64_t word : _history.Delivered())
     {
         out << word << ' ';

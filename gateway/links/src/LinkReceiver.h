@@ -104,6 +104,7 @@ private:
     std::size_t _unacknowledged = 0;       // parts that came since the last acknowledgement
     std::size_t _unacknowledgedBytes = 0;  // of their payloads
     bool _heldBack = false;                // the sender was last told that there is no room, or nearly none
+    bool _waits = false;                   // the next part could not be consumed for want of room or memory
     std::uint32_t _toldCredit = 0;         // by the last acknowledgement
     std::size_t _sharers = 1;              // links that share the room that the sender is told of next
     bool _noMemory = false;                // for the next piece of a large message

@@ -57,6 +57,7 @@ bool LinkReceiver::Append(const ReceivedPart &part, LinkTime now)
 // Rule R7: acknowledge, do not advance.
 LinkReceiver::Result LinkReceiver::HoldBack(LinkTime now)
 {
+    _waits = true;
     _heldBack = true;
     AcknowledgeBy(now);
     return Result::NotNow;

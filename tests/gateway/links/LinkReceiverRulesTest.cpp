@@ -558,6 +558,21 @@ TEST_F(LinkReceiverRules, R7_AFullQueueHoldsTheStreamBackAndGivesCreditForOneMes
     EXPECT_EQ(a.ReceiverCounters().HeldBackFull, 1U) << "what comes behind is not even tried";
 }
 
+TEST_F(LinkReceiverRules, R7_AFullQueueHoldsNoStreamBackOfWhichNothingWaits)
+{
+    a.RoomLeft = 0;
+    OpenSession();
+    EXPECT_FALSE(a.ReceiverCounters().HeldBack) << "the message went into the last place";
+    a.Answer = LocalQueueResult::Full;
+    a.Hear(Data(2, {"2"}));
+    a.Pass(10ms);
+    EXPECT_TRUE(a.ReceiverCounters().HeldBack);
+    a.Answer = LocalQueueResult::Ok;
+    a.Node->OnRoom("q");
+    a.Pass(10ms);
+    EXPECT_FALSE(a.ReceiverCounters().HeldBack) << "it was delivered";
+}
+
 TEST_F(LinkReceiverRules, R7_RoomIsMadeKnown)
 {
     OpenSession();

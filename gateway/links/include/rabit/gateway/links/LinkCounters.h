@@ -50,7 +50,7 @@ struct LinkReceiverCounters
     std::uint64_t SessionsOpened = 0;
     std::uint64_t AcksSent = 0;
     // Present state.
-    bool HeldBack = false;          // the local queue was full: the stream waits for room
+    bool HeldBack = false;          // a message waits: the queue is full, or there is no memory for it
     std::size_t KeptBytes = 0;      // of parts that wait
     std::size_t AssemblyBytes = 0;  // of a large message that is coming in
 };
