@@ -27,6 +27,7 @@ bool AcceptedQueue::Find()
     _wrongKind = handle && handle->QueueType() != typeid(Queue);
     const std::shared_ptr<Queue> queue =
         handle && !_wrongKind ? std::static_pointer_cast<Queue>(handle->Queue()) : nullptr;
+    _handle = handle;
     if (queue == _queue)
     {
         return false;
@@ -83,6 +84,11 @@ LocalQueueResult AcceptedQueue::Deliver(const Decoded &decoded, bool redelivered
     if (decoded.Result == LocalQueueResult::WrongType)
     {
         return LocalQueueResult::WrongType;
+    }
+    // Nobody would take a message out of a queue whose manager has gone.
+    if (_queue && _handle.expired() && Find())
+    {
+        _gate->RoomCame = true;
     }
     if (_wrongKind)
     {

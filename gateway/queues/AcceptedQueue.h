@@ -3,6 +3,7 @@
 #include <rabit/RabitEvent.h>
 #include <rabit/RabitMessage.h>
 #include <rabit/RabitMessageQueue.h>
+#include <rabit/RabitQueueHandle.h>
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/gateway/links/LinkHost.h>
@@ -49,14 +50,14 @@ public:
     Decoded Decode(std::string_view type, std::span<const std::uint8_t> payload) const;
 
     // Adds a message without telling the queue's handlers: once no lock is held, call NotifyEnqueued of the
-    // queue that it went into.
+    // queue that it went into (Local). Looks the queue up if the one that was found has left the workspace.
     LocalQueueResult Deliver(const Decoded &decoded, bool redelivered);
     // Null while there is none.
     const std::shared_ptr<Queue> &Local() const { return _queue; }
     // Number of messages that the queue would take now. If it is 0, TakeRoomCame returns true once there is
     // room.
     std::size_t Room() const;
-    // True, once, if there is room again after there was none.
+    // True, once, if there is room again after there was none, or Deliver has found another queue.
     bool TakeRoomCame();
 
 private:
@@ -74,6 +75,8 @@ private:
     RabitWorkspace &_workspace;
     std::map<std::string, const MessageType *, std::less<>> _types;  // unchanged after construction
     std::shared_ptr<Queue> _queue;
+    // Of _queue. The workspace and the manager own it, so it expires once both have given the queue up.
+    std::weak_ptr<RabitQueueHandle> _handle;
     bool _wrongKind = false;
     std::shared_ptr<Gate> _gate;
     RabitScopedConnection _popped;

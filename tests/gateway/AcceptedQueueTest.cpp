@@ -105,6 +105,20 @@ TEST_F(AcceptedQueueTest, KeepsTheQueueThatAMessageWentIntoAfterItsManagerHasGon
     EXPECT_EQ(delivered->NoMessagesInQueue(), 1);
 }
 
+// Between two looks of the gateway's thread.
+TEST_F(AcceptedQueueTest, PutsNoMessageIntoAQueueThatWasReplaced)
+{
+    AddLocal(1);
+    const std::shared_ptr<AcceptedQueue::Queue> former = local;
+    local = std::make_shared<AcceptedQueue::Queue>(1, "Orders");
+    workspace.AddManagerMessageQueue("Orders", local);
+    EXPECT_EQ(accepted.Deliver(Goto(), false), LocalQueueResult::Ok);
+    EXPECT_EQ(former->NoMessagesInQueue(), 0);
+    EXPECT_EQ(local->NoMessagesInQueue(), 1);
+    EXPECT_EQ(accepted.Local(), local);
+    EXPECT_TRUE(accepted.TakeRoomCame()) << "other links may wait for the new queue";
+}
+
 TEST_F(AcceptedQueueTest, TellsATypeThatIsNotTakenFromBytesThatAreNoMessage)
 {
     AddLocal(1);
