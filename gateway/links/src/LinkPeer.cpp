@@ -278,7 +278,7 @@ LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)
     }
     if (receiver == nullptr)
     {
-        if (_receivers.size() >= _context.Settings.MaxLinksPerPeer)
+        if (_receivers.size() >= _context.Settings.MaxLinksPerPeer && !DropFormerReceiver())
         {
             ++_context.Counters.TooManyLinks;
             return nullptr;
@@ -294,6 +294,25 @@ LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)
     }
     _receiverOf[data.Link] = receiver;
     return receiver;
+}
+
+// A peer has no more links of its own at a time, so one whose queues have had other names in former
+// incarnations is heard nevertheless. A receiver that the peer still uses is made again with its next
+// message.
+bool LinkPeer::DropFormerReceiver()
+{
+    const auto former =
+        std::find_if(_receivers.begin(), _receivers.end(),
+                     [this](const auto &entry)
+                     { return !entry.second->HasSessionOf(_incarnation) && !entry.second->KeepsParts(); });
+    if (former == _receivers.end())
+    {
+        return false;
+    }
+    const LinkReceiver *const receiver = former->second.get();
+    std::erase_if(_receiverOf, [receiver](const auto &entry) { return entry.second == receiver; });
+    _receivers.erase(former);
+    return true;
 }
 
 // Refuses all parts, whatever came before them or is missing between them. Only their numbers have to be

@@ -99,6 +99,9 @@ private:
     // The receiver of the data; null: the number means nothing yet, the queue is not accepted, or there are
     // too many.
     LinkReceiver *ReceiverOf(const LinkData &data);
+    // Drops a receiver that a former incarnation of the peer used, and that keeps nothing. False: there is
+    // none.
+    bool DropFormerReceiver();
     void OnData(const LinkFrame &frame, LinkTime now);
     void OnAcks(const LinkFrame &frame, LinkTime now);
     // How long the acknowledgement of data that came now may wait.

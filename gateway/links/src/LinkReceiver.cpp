@@ -296,7 +296,7 @@ void LinkReceiver::Describe(LinkAck &ack, std::uint64_t sourceLife) const
 {
     ack = {};
     ack.Link = _link;
-    ack.Open = HasSession() && _senderLife == sourceLife;
+    ack.Open = HasSessionOf(sourceLife);
     if (ack.Open)
     {
         ack.Cumulative = _cumulative;

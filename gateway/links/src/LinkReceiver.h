@@ -45,6 +45,8 @@ public:
     // The incarnation of the source is over: no more parts of incomplete messages come.
     void SourceEnded();
     bool KeepsParts() const { return !_kept.Empty(); }
+    // True if a stream of that incarnation of the source is being received.
+    bool HasSessionOf(std::uint64_t sourceLife) const { return HasSession() && _senderLife == sourceLife; }
 
     // When an acknowledgement is due; LinkNever: none is.
     LinkTime AckDue() const { return _ackAt; }

@@ -202,6 +202,46 @@ TEST_F(MalformedInput, AnAcknowledgementOfAnUnknownLinkOnlyTellsOfThePeer)
     EXPECT_EQ(a.Node->Counters().PeerRestarts, 1U);
 }
 
+TEST(LinkLimits, QueuesOfAFormerIncarnationMakeRoomForThoseOfThePresentOne)
+{
+    LinkSettings settings;
+    settings.MaxLinksPerPeer = 1;
+    NodeUnderTest a(settings);
+    PlayedPeer b;
+    a.Hear(b.Data(1, {"1"}, a.Now));
+    b.Life += 1;
+    a.Pass(1ms);
+    StoredFrame otherQueue = b.Data(1, {"2"}, a.Now);
+    otherQueue.Queue = "other";
+    a.Hear(otherQueue);
+    EXPECT_EQ(a.Node->Counters().TooManyLinks, 0U);
+    EXPECT_EQ(a.TakeDelivered(),
+              (std::vector<DeliveredMessage>{{"b", "q", "T", "1", false}, {"b", "other", "T", "2", false}}));
+    a.Pass(10ms);
+    EXPECT_FALSE(a.TakeAcks().empty());
+    a.Hear(b.Data(2, {"3"}, a.Now));
+    EXPECT_EQ(a.Node->Counters().TooManyLinks, 1U) << "the other one is in use";
+}
+
+TEST(LinkLimits, AQueueOfAFormerIncarnationWithAMessageThatWaitsStays)
+{
+    LinkSettings settings;
+    settings.MaxLinksPerPeer = 1;
+    NodeUnderTest a(settings);
+    PlayedPeer b;
+    a.Answer = LocalQueueResult::Full;
+    a.Hear(b.Data(1, {"1"}, a.Now));
+    b.Life += 1;
+    StoredFrame otherQueue = b.Data(1, {"2"}, a.Now);
+    otherQueue.Queue = "other";
+    a.Hear(otherQueue);
+    EXPECT_EQ(a.Node->Counters().TooManyLinks, 1U);
+    a.Answer = LocalQueueResult::Ok;
+    a.Node->OnRoom("q");
+    a.Pass(0ms);
+    EXPECT_EQ(a.TakeDelivered(), (std::vector<DeliveredMessage>{{"b", "q", "T", "1", false}}));
+}
+
 TEST(LinkLimits, DatagramsOfTooManyPeersAndLinksAreDropped)
 {
     LinkSettings settings;
