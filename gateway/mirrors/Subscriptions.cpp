@@ -8,11 +8,21 @@
 
 #include "names/NamePattern.h"
 #include "names/QosProfileWords.h"
+#include "names/TypeDefinition.h"
 #include "wire/Announcements.h"
 #include "wire/Offers.h"
 
 namespace Rabit
 {
+namespace
+{
+
+std::uint64_t DefinitionOf(const SubscribeRule &rule)
+{
+    return DefinitionHash(*MessageTypeRegistry::Find(rule.Type));
+}
+
+}  // namespace
 
 Subscriptions::Subscriptions(const std::vector<SubscribeRule> &rules, const OriginTable &origins,
                              RabitWorkspace &workspace, RabitHandlerThread *handlers,
@@ -32,7 +42,7 @@ void Subscriptions::Open(TransportSession &session)
     {
         if (i == _subscriptions.size())
         {
-            _subscriptions.push_back({&_rules[i], Make(_rules[i])});
+            _subscriptions.push_back({&_rules[i], Make(_rules[i]), DefinitionOf(_rules[i])});
         }
         _subscriptions[i].Subscriber->Open(session);
     }
@@ -71,7 +81,7 @@ bool Subscriptions::Add(const SubscribeRule &rule)
     _rules.push_back(rule);
     try
     {
-        _subscriptions.push_back({&_rules.back(), MakeOpen(_rules.back())});
+        _subscriptions.push_back({&_rules.back(), MakeOpen(_rules.back()), DefinitionOf(rule)});
     }
     catch (...)
     {
@@ -111,17 +121,23 @@ void Subscriptions::Close()
     _known.clear();
 }
 
-// The profile with which the node announces the message and type of the rule; empty if it does not.
-std::optional<QosProfile> Subscriptions::OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer)
+Subscriptions::Offer Subscriptions::OfferFor(const Subscription &subscription, const PeerTable::Peer &peer)
 {
+    const SubscribeRule &rule = *subscription.Rule;
     if (!peer.HasPresentOffers() || !MatchesAny(rule.From, peer.Node))
     {
-        return std::nullopt;
+        return {};
     }
     const Gateway::PublishedMessage *offer = Offers::Find(*peer.Offers, rule.Message);
-    return offer != nullptr && offer->type == rule.Type
-               ? std::optional(ProfileOf(offer->qos).value_or(QosProfile::State))
-               : std::nullopt;
+    if (offer == nullptr || offer->type != rule.Type)
+    {
+        return {};
+    }
+    if (offer->definition != subscription.Definition)
+    {
+        return {std::nullopt, true};
+    }
+    return {ProfileOf(offer->qos).value_or(QosProfile::State), false};
 }
 
 std::vector<const PeerTable::Peer *> Subscriptions::OnOffers(const PeersOverPaths &peers)
@@ -139,7 +155,8 @@ std::vector<const PeerTable::Peer *> Subscriptions::OnOffers(const PeersOverPath
         changed.push_back(peer);
         for (const Subscription &subscription : _subscriptions)
         {
-            subscription.Subscriber->SetOffer(peer->Node, OfferFor(*subscription.Rule, *peer));
+            const Offer offer = OfferFor(subscription, *peer);
+            subscription.Subscriber->SetOffer(peer->Node, offer.Profile, offer.IsOtherVersion);
         }
     }
     return changed;
@@ -148,9 +165,9 @@ std::vector<const PeerTable::Peer *> Subscriptions::OnOffers(const PeersOverPath
 std::vector<StateRepair::Wanted> Subscriptions::StatesWanted(const PeerTable::Peer &peer) const
 {
     std::vector<StateRepair::Wanted> wanted;
-    for (std::size_t i = 0; i < _rules.size(); ++i)
+    for (std::size_t i = 0; i < _subscriptions.size(); ++i)
     {
-        if (OfferFor(_rules[i], peer) == QosProfile::State)
+        if (OfferFor(_subscriptions[i], peer).Profile == QosProfile::State)
         {
             wanted.push_back(
                 {.State = *Announcements::StateIndexOf(*peer.Offers, _rules[i].Message), .Subscription = i});

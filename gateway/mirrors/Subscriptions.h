@@ -65,6 +65,14 @@ private:
     {
         const SubscribeRule *Rule = nullptr;
         std::unique_ptr<TopicSubscriber> Subscriber;
+        std::uint64_t Definition = 0;  // hash of the type's IDL here
+    };
+
+    // How a node announces the message and type of a subscription.
+    struct Offer
+    {
+        std::optional<QosProfile> Profile;  // empty: it does not, or with another definition of the type
+        bool IsOtherVersion = false;
     };
 
     // The announcement of a node that was processed last.
@@ -80,7 +88,7 @@ private:
     std::unique_ptr<TopicSubscriber> MakeOpen(const SubscribeRule &rule) const;
     // Has the reader of that rule read from the nodes of the other rule, too. False if that changes nothing.
     bool Widen(std::size_t place, const SubscribeRule &rule);
-    static std::optional<QosProfile> OfferFor(const SubscribeRule &rule, const PeerTable::Peer &peer);
+    static Offer OfferFor(const Subscription &subscription, const PeerTable::Peer &peer);
 
     std::deque<SubscribeRule> _rules;  // they stay where they are
     const OriginTable &_origins;

@@ -83,6 +83,7 @@ std::shared_ptr<TopicSubscriber::Source> TopicSubscriber::SourceOf(std::string_v
     source->Counters.node = node;
     source->LocalName = source->Counters.node + "/" + _rule.Message;
     source->IsWanted = MatchesAny(_rule.From, node);
+    source->IsOtherVersion = _otherVersions.count(node) > 0;
     const auto offered = _offers.find(node);
     source->Offer = offered == _offers.end() ? std::nullopt : std::optional(offered->second);
     offer = source->Offer;
@@ -94,14 +95,25 @@ void TopicSubscriber::Forget(const std::string &node)
     const std::lock_guard lock(_mutex);
     _sources.erase(node);
     _offers.erase(node);
+    _otherVersions.erase(node);
 }
 
-void TopicSubscriber::SetOffer(const std::string &node, std::optional<QosProfile> profile)
+void TopicSubscriber::SetOffer(const std::string &node, std::optional<QosProfile> profile,
+                               bool isOtherVersion)
 {
     const std::lock_guard lock(_mutex);
     if (const auto source = _sources.find(node); source != _sources.end())
     {
         source->second->Offer = profile;
+        source->second->IsOtherVersion = isOtherVersion;
+    }
+    if (isOtherVersion)
+    {
+        _otherVersions.insert(node);
+    }
+    else
+    {
+        _otherVersions.erase(node);
     }
     if (profile)
     {
@@ -198,8 +210,8 @@ TopicSubscriber::Outcome TopicSubscriber::Take(Source &source, std::optional<Qos
                                                SampleBytes bytes, const SampleInfo &info)
 {
     const auto origin = _origins.Find(info.Node);
-    const bool known =
-        !info.Node.empty() && source.IsWanted && origin && origin->Incarnation == info.Incarnation;
+    const bool known = !info.Node.empty() && source.IsWanted && !source.IsOtherVersion && origin &&
+                       origin->Incarnation == info.Incarnation;
     const auto posted =
         known ? origin->PostedAt(info.SourceTime, _workspace.GetClock().Monotonic()) : std::nullopt;
     if (!posted || IsOvertaken(source, info) || (_rule.Qos == QosProfile::State && offer != _rule.Qos))

@@ -8,6 +8,7 @@
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/Transport.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -15,6 +16,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,7 +34,8 @@ namespace Rabit
 // best effort and volatile whatever the node announces: a lost State is requested (StateRepair).
 //
 // Some samples are not posted. Dropped and counted are samples of a node that the rule does not name,
-// whatever its partition; that has not been heard as live, or is in another incarnation by now; or that does
+// whatever its partition; that has not been heard as live, or is in another incarnation by now; that
+// announces another definition of the type, whose samples may decode as something else; or that does
 // not announce the profile of the rule. So are samples that are older than the last one posted of that
 // incarnation, lie in the future, do not decode, or come from programs that are no nodes. Repetitions of a
 // State that is posted already are ignored, and not counted.
@@ -56,8 +59,9 @@ public:
     void Open(TransportSession &session);
 
     // The profile with which a node announces the message; empty: it does not say, or not yet. A rule with
-    // the profile State takes nothing from a node that does not announce State.
-    void SetOffer(const std::string &node, std::optional<QosProfile> profile);
+    // the profile State takes nothing from a node that does not announce State. `isOtherVersion`: it
+    // announces the message with another definition of the type.
+    void SetOffer(const std::string &node, std::optional<QosProfile> profile, bool isOtherVersion = false);
     // The source time of the newest accepted sample of that incarnation of a node: posted, or useless here
     // however often it comes.
     std::optional<std::int64_t> TakenIn(const std::string &node, std::uint64_t incarnation) const;
@@ -86,7 +90,8 @@ private:
     struct Source
     {
         Gateway::TopicStatus Counters;
-        bool IsWanted = false;  // the rule names it
+        bool IsWanted = false;                    // the rule names it
+        std::atomic<bool> IsOtherVersion{false};  // of the type, as it announces
         std::string LocalName;
         std::optional<RabitMessageLease> Local;
         // Exchanged for the local message's contents by each post: of each node its own, so that a large
@@ -134,6 +139,7 @@ private:
     // The handler holds the one that it uses, which may be forgotten meanwhile.
     std::map<std::string, std::shared_ptr<Source>, std::less<>> _sources;
     std::map<std::string, QosProfile, std::less<>> _offers;
+    std::set<std::string, std::less<>> _otherVersions;  // nodes that announce another definition of the type
     std::uint64_t _crowdedOut = 0;
 
     std::vector<std::unique_ptr<TransportReader>> _readers;

@@ -11,8 +11,11 @@
 #include <memory>
 #include <vector>
 
+#include "BeatSamples.h"
 #include "MessageSample.h"
 #include "keyed.idl.h"
+#include "mirrors/Subscriptions.h"
+#include "names/TypeDefinition.h"
 #include "uav.idl.h"
 
 namespace Rabit
@@ -193,6 +196,55 @@ TEST_F(TopicSubscriberTest, TheTapIsToldOfEachPostedSampleAndOfNoOther)
 }
 
 // The transport's thread must go on: it brings the beats of other nodes.
+// Its bytes may decode as something else.
+TEST_F(TopicSubscriberTest, PostsNothingOfANodeThatAnnouncesAnotherDefinitionOfTheType)
+{
+    const SubscribeRule telemetry{
+        .Message = "Contact", .Type = "GatewayTest::Contact", .From = {"*"}, .Qos = QosProfile::Telemetry};
+    TopicSubscriber other(telemetry, Contact::IdlType(), origins, workspace);
+    other.Open(session);
+    other.SetOffer("uav1", std::nullopt, true);
+    Hear(1, 1'000'000'000);
+    EXPECT_EQ(Posted(), -1);
+    EXPECT_EQ(other.Status().at(0).refused, 1u);
+    other.SetOffer("uav1", QosProfile::Telemetry);
+    Hear(2, 2'000'000'000);
+    EXPECT_EQ(Posted(), 2);
+    other.SetOffer("uav1", std::nullopt, true);
+    Hear(3, 3'000'000'000);
+    EXPECT_EQ(Posted(), -1);
+    EXPECT_EQ(other.Status().at(0).refused, 2u);
+}
+
+TEST_F(TopicSubscriberTest, PostsAgainAfterSubscriptionsHaveMatchedTheDefinition)
+{
+    for (const bool isSame : {false, true})
+    {
+        Gateway::PublishedMessage published;
+        published.message = "Contact";
+        published.type = "GatewayTest::Contact";
+        published.qos = "telemetry";
+        published.definition = DefinitionHash(Contact::IdlType()) + (isSame ? 0u : 1u);
+        Gateway::Announcement announcement;
+        announcement.publishes.push_back(published);
+        HeardBeat heard;
+        heard.Node = "uav1";
+        heard.Incarnation = 5;
+        heard.Beat = BeatAt(1s);
+        heard.Arrival = 1s;
+        Announce(heard.Beat, announcement);
+        PeerTable peers{"ground", 1};
+        peers.OnBeat(heard);
+        Subscriptions subscriptions(
+            {{.Message = "Contact", .Type = "GatewayTest::Contact", .From = {"uav1"}}}, origins, workspace);
+        subscriptions.Open(session);
+        subscriptions.OnOffers(peers);
+        Hear(isSame ? 2u : 1u, isSame ? 2'000'000'000 : 1'000'000'000);
+        EXPECT_EQ(Posted(), isSame ? 2 : -1);
+        subscriptions.Close();
+    }
+}
+
 TEST_F(TopicSubscriberTest, TellsOfWhichIncarnationThePostedSamplesWere)
 {
     EXPECT_EQ(subscriber.PostedOf("uav1"), std::nullopt);
