@@ -17,7 +17,7 @@ namespace Rabit
 namespace
 {
 
-std::uint64_t DefinitionOf(const SubscribeRule &rule)
+std::uint64_t HashOfType(const SubscribeRule &rule)
 {
     return DefinitionHash(*MessageTypeRegistry::Find(rule.Type));
 }
@@ -42,7 +42,7 @@ void Subscriptions::Open(TransportSession &session)
     {
         if (i == _subscriptions.size())
         {
-            _subscriptions.push_back({&_rules[i], Make(_rules[i]), DefinitionOf(_rules[i])});
+            _subscriptions.push_back({&_rules[i], Make(_rules[i]), HashOfType(_rules[i])});
         }
         _subscriptions[i].Subscriber->Open(session);
     }
@@ -81,7 +81,7 @@ bool Subscriptions::Add(const SubscribeRule &rule)
     _rules.push_back(rule);
     try
     {
-        _subscriptions.push_back({&_rules.back(), MakeOpen(_rules.back()), DefinitionOf(rule)});
+        _subscriptions.push_back({&_rules.back(), MakeOpen(_rules.back()), HashOfType(rule)});
     }
     catch (...)
     {

@@ -7,6 +7,7 @@
 
 #include "HandNode.h"
 #include "SimulatedFleet.h"
+#include "names/TypeDefinition.h"
 #include "presence/Whereabouts.h"
 #include "wire/BeatNews.h"
 
@@ -441,6 +442,7 @@ public:
         pose.message = "Pose";
         pose.type = "Uav::Pose";
         pose.qos = "telemetry";
+        pose.definition = DefinitionHash(Uav::Pose::IdlType());
         Gateway::Beat beat = _node.Beat();
         Announce(beat, announcement);
         _node.Write(beat);

@@ -14,7 +14,7 @@ namespace
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-constexpr std::uint64_t Definition = 21;
+constexpr std::uint64_t GotoDefinition = 21;
 
 class RemoteQueuesTest : public ::testing::Test
 {
@@ -29,7 +29,7 @@ protected:
     }
 
     // A node that accepts Goto, of that definition, in MissionControl.
-    static PeerTable::Peer Accepting(const std::string &node, std::uint64_t definition = Definition)
+    static PeerTable::Peer Accepting(const std::string &node, std::uint64_t definition = GotoDefinition)
     {
         Gateway::QueueType type;
         type.type = "Uav::Goto";
@@ -45,12 +45,12 @@ protected:
 
     RemoteQueues::Answer Ask(const std::string &node) const
     {
-        return remote.Ask(node, "MissionControl", "Uav::Goto", Definition);
+        return remote.Ask(node, "MissionControl", "Uav::Goto", GotoDefinition);
     }
 
     RemoteQueues::LiveNodes All() const
     {
-        return remote.LiveNodesFor("MissionControl", "Uav::Goto", Definition);
+        return remote.LiveNodesFor("MissionControl", "Uav::Goto", GotoDefinition);
     }
 
     RemoteQueues remote{"ground"};
@@ -96,7 +96,7 @@ TEST_F(RemoteQueuesTest, AnAnnouncementEndsWithItsIncarnation)
     remote.Update(Live("uav1", 6));
     EXPECT_EQ(Ask("uav1").What, QueueAcceptance::NotAnnounced);
     EXPECT_THAT(All().NotAnnounced, ElementsAre("uav1"));
-    PeerTable::Peer again = Accepting("uav1", Definition + 1);
+    PeerTable::Peer again = Accepting("uav1", GotoDefinition + 1);
     again.Incarnation = 6;
     remote.Update(again);
     EXPECT_EQ(Ask("uav1").What, QueueAcceptance::OtherDefinition);

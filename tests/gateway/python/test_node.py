@@ -151,7 +151,7 @@ def test_a_message_to_all_has_an_outcome_for_each(idl, one_network):
     uavs = [rabit.Node(name, accept=accept, **one_network) for name in ("uav1", "uav2")]
     with uavs[0], uavs[1], rabit.Node("ground", **one_network) as ground:
         wait_until(lambda: all(ground.fleet().is_up(name) for name in ("uav1", "uav2")))
-        receipt = wait_until(lambda: (lambda r: r if sum(r.counts.values()) == 2 else None)(
+        receipt = wait_until(lambda: (lambda r: r if r.counts[rabit.Outcome.REFUSED] == 0 and sum(r.counts.values()) == 2 else None)(
             ground.send("*/MissionControl", idl.Uav.Goto(id=1))))
         assert receipt.wait(120) is rabit.Outcome.DELIVERED
         assert receipt.counts[rabit.Outcome.DELIVERED] == 2
