@@ -189,7 +189,7 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     }
     if (!_firstHeard.empty())
     {
-        BeatExtensions::SayFirstHeard(beat, _firstHeard);
+        _nextFirstHeard = BeatExtensions::SayFirstHeard(beat, _firstHeard, _nextFirstHeard);
     }
     if (fleetSum > 0)
     {

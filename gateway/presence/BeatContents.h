@@ -66,8 +66,8 @@ public:
     // as fit.
     void SetStrains(std::vector<LinkStrain> strains) { _strains = std::move(strains); }
 
-    // Sets the nodes that are heard by this path and by no better one, by their tags, which each beat from
-    // now on tells.
+    // Sets the nodes that are heard by this path and by no better one, by their sorted tags, which the beats
+    // from now on tell.
     void SetFirstHeard(std::vector<std::uint32_t> tags) { _firstHeard = std::move(tags); }
 
     // Time between two beats that tell the number of this node's problems. After a change, or if somebody has
@@ -119,7 +119,8 @@ private:
     bool _isTool = false;
     bool _isReplay = false;
     std::vector<LinkStrain> _strains;
-    std::vector<std::uint32_t> _firstHeard;
+    std::vector<std::uint32_t> _firstHeard;  // sorted
+    std::size_t _nextFirstHeard = 0;
     ProblemCount _problems;
     int _problemBeats = 0;  // that tell it in a row
     Duration _problemsSaid{0};

@@ -25,7 +25,8 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     }
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
     peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
-    const bool hearsHereFirst = BeatExtensions::IsFirstHeardHere(heard.Beat, _ownTag);
+    const bool hearsHereFirst =
+        BeatExtensions::IsFirstHeardHere(heard.Beat, _ownTag).value_or(peer.HearsHereFirst);
     change.State |= std::exchange(peer.HearsHereFirst, hearsHereFirst) != hearsHereFirst;
     change.State |= TakeProblems(peer, heard);
     if (const std::optional<std::uint32_t> told = BeatExtensions::FleetSumIn(heard.Beat))

@@ -399,6 +399,7 @@ void Presence::SetFirstHeard(const std::vector<std::string> &nodes)
             tags.push_back(peer->Tag);
         }
     }
+    std::sort(tags.begin(), tags.end());
     if (tags != _firstHeard)
     {
         _firstHeard = tags;

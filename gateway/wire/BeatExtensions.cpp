@@ -133,17 +133,20 @@ void Say(Gateway::Beat &beat, const ProblemCount &problems)
     Add(beat, Problems).states.assign(bytes.begin(), bytes.end());
 }
 
-void SayFirstHeard(Gateway::Beat &beat, std::span<const std::uint32_t> tags)
+std::size_t SayFirstHeard(Gateway::Beat &beat, std::span<const std::uint32_t> tags, std::size_t from)
 {
+    const std::size_t count = std::min(tags.size(), MostFirstHeard);
+    const std::size_t first = tags.size() > count ? from % tags.size() : 0;
     std::vector<std::uint8_t> bytes;
-    for (const std::uint32_t tag : tags.first(std::min(tags.size(), MostFirstHeard)))
+    for (std::size_t i = 0; i < count; ++i)
     {
-        Put(tag, bytes);
+        Put(tags[(first + i) % tags.size()], bytes);
     }
     Add(beat, FirstHeardHere).states.assign(bytes.begin(), bytes.end());
+    return first + count - 1;  // the windows overlap, so that none is between two of them
 }
 
-bool IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag)
+std::optional<bool> IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag)
 {
     for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
     {
@@ -151,13 +154,22 @@ bool IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag)
         {
             continue;
         }
-        bool isHeard = false;
+        std::vector<std::uint32_t> tags;
         std::span<const std::uint8_t> bytes(wanted.states.data(), wanted.states.size());
         while (bytes.size() >= sizeof(tag))
         {
-            isHeard |= Take<std::uint32_t>(bytes) == tag;
+            tags.push_back(Take<std::uint32_t>(bytes));
         }
-        return isHeard;
+        if (std::find(tags.begin(), tags.end(), tag) != tags.end())
+        {
+            return true;
+        }
+        const bool isWindow = tags.size() >= MostFirstHeard;
+        const bool isAbove = isWindow && tag > tags.front();
+        const bool isBelow = isWindow && tag < tags.back();
+        const bool isInside =
+            isWindow && tags.front() > tags.back() ? isAbove || isBelow : isAbove && isBelow;
+        return !isWindow || isInside ? std::optional(false) : std::nullopt;
     }
     return false;
 }

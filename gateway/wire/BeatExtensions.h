@@ -38,7 +38,7 @@ inline constexpr std::size_t StrainBytes = 8;  // of each
 inline constexpr std::size_t ProblemBytes = 6;
 // Most strains that are read from one beat.
 inline constexpr std::size_t MostStrains = 4;
-// Most tags in FirstHeardHere; further nodes are not told.
+// Most tags in FirstHeardHere. A beat with as many says nothing of the tags outside of its window.
 inline constexpr std::size_t MostFirstHeard = 32;
 
 // The sender lacks the text of a type that a node has announced.
@@ -71,8 +71,11 @@ void Say(Gateway::Beat &beat, const ProblemCount &problems);
 // Empty if the beat does not tell.
 std::optional<ProblemCount> ProblemsIn(const Gateway::Beat &beat);
 
-void SayFirstHeard(Gateway::Beat &beat, std::span<const std::uint32_t> tags);
-bool IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag);
+// `tags` are sorted and different. If there are more than MostFirstHeard, the beat has those from the one at
+// `from` on, and the first one comes after the last. Returns `from` for the next beat.
+std::size_t SayFirstHeard(Gateway::Beat &beat, std::span<const std::uint32_t> tags, std::size_t from);
+// Empty if the beat does not tell.
+std::optional<bool> IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t tag);
 
 void SayFleetSum(Gateway::Beat &beat, std::uint32_t sum);
 // Empty if the beat does not tell.

@@ -46,6 +46,41 @@ TEST(BeatExtensions, WhatIsAskedForIsWhatIsUnderstood)
     EXPECT_THAT(BeatExtensions::TypeQuestionsIn(beat), ElementsAre(first, second));
 }
 
+TEST(BeatExtensions, OfFewNodesABeatTellsOfEachWhetherItIsHeardFirstHere)
+{
+    const std::vector<std::uint32_t> tags{3, 5};
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    EXPECT_EQ(BeatExtensions::IsFirstHeardHere(beat, 3), false);
+    BeatExtensions::SayFirstHeard(beat, tags, 0);
+    EXPECT_EQ(BeatExtensions::IsFirstHeardHere(beat, 3), true);
+    EXPECT_EQ(BeatExtensions::IsFirstHeardHere(beat, 4), false);
+    EXPECT_EQ(BeatExtensions::IsFirstHeardHere(beat, 6), false);
+}
+
+// Nodes 1, 3, 5, ... are heard here first.
+TEST(BeatExtensions, OfManyNodesSomeBeatsTellOfEachAndNoneTellsWrong)
+{
+    std::vector<std::uint32_t> tags;
+    for (std::uint32_t tag = 1; tags.size() < 100; tag += 2)
+    {
+        tags.push_back(tag);
+    }
+    std::vector<int> told(tags.back() + 2);
+    std::size_t from = 0;
+    for (int i = 0; i < 7; ++i)
+    {
+        Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+        from = BeatExtensions::SayFirstHeard(beat, tags, from);
+        for (std::uint32_t tag = 0; tag < told.size(); ++tag)
+        {
+            const std::optional<bool> isFirst = BeatExtensions::IsFirstHeardHere(beat, tag);
+            told[tag] += isFirst ? 1 : 0;
+            EXPECT_EQ(isFirst.value_or(tag % 2 == 1), tag % 2 == 1) << tag;
+        }
+    }
+    EXPECT_THAT(told, ::testing::Each(::testing::Gt(0)));
+}
+
 TEST(BeatExtensions, AQuestionOfAnotherSizeIsNone)
 {
     Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
