@@ -104,7 +104,7 @@ std::chrono::nanoseconds GatewayManager::Parts::Service()
         const PeerTable::Change &heard = _paths[path]->TakeIn(now).Change;
         if (heard.Any())
         {
-            TakeIn(path, heard, change, now);
+            TakeIn(path, heard, change);
         }
     }
     if (_paths.size() > 1)
@@ -126,7 +126,7 @@ std::chrono::nanoseconds GatewayManager::Parts::Service()
     }
     if (_paths.size() > 1)
     {
-        next = std::min({next, _choice.Due().value_or(next), _nextLateLook});
+        next = std::min(next, _nextLook);
         _links.WillServe(next);
     }
     if (change.State || change.Offers || _foreign.TakeChange())

@@ -77,12 +77,12 @@ private:
     void MakePaths(const std::vector<std::shared_ptr<Transport>> &transports, const RandomSource &random);
 
     // Takes in the changes that a path has heard of.
-    void TakeIn(std::size_t path, const PeerTable::Change &heard, Heard &change, Duration now);
+    void TakeIn(std::size_t path, const PeerTable::Change &heard, Heard &change);
 
     // An announcement that has come by one path need not come by the others.
     void ShareOffers(const PeerTable::Peer &peer, Presence &beats, Heard &change);
-    void Forget(const std::string &node, std::size_t path, Duration now);
-    void LookForLateBeats(Duration now);
+    void Forget(const std::string &node, std::size_t path);
+    void LookAtBeats(Duration now);
     void ChoosePaths(Heard &change, Duration now);
 
     // Compares the announcements with the subscriptions.
@@ -131,7 +131,7 @@ private:
     const SourceClock _source;
     Subscriptions _subscriptions;
     PathChoice _choice;
-    Duration _nextLateLook{0};
+    Duration _nextLook{0};
     ForeignTopics _foreign{_config, _source, Handlers()};
     std::shared_ptr<Gateway::Fleet> _fleet;
     LinkStrains _strains;

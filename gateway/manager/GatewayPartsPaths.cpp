@@ -10,17 +10,7 @@ namespace Rabit
 namespace
 {
 
-constexpr std::chrono::nanoseconds LateLookPeriod = std::chrono::milliseconds(50);
-
-// Longer than the air and a busy machine hold up a beat.
-constexpr std::chrono::nanoseconds HeldUp = std::chrono::milliseconds(250);
-
-// True if the newest beat was held up on the way, or none came when half the time to the one after it has
-// passed as well.
-bool IsLate(const PeerTable::Peer &peer, std::chrono::nanoseconds now)
-{
-    return now - peer.LastHeard > peer.Period * 3 / 2 || peer.Clock.LastDelay() > HeldUp;
-}
+constexpr std::chrono::nanoseconds LookPeriod = std::chrono::milliseconds(50);
 
 }  // namespace
 
@@ -68,31 +58,18 @@ void GatewayManager::Parts::MakePaths(const std::vector<std::shared_ptr<Transpor
     }
 }
 
-void GatewayManager::Parts::TakeIn(std::size_t path, const PeerTable::Change &heard, Heard &change,
-                                   Duration now)
+void GatewayManager::Parts::TakeIn(std::size_t path, const PeerTable::Change &heard, Heard &change)
 {
     Presence &beats = _paths[path]->Beats();
     for (const std::string &node : heard.Forgotten)
     {
-        Forget(node, path, now);
-    }
-    for (const std::string &node : heard.Missed)
-    {
-        // That path comes last, since it is compared with the others.
-        for (std::size_t i = 1; i <= _paths.size(); ++i)
-        {
-            const std::size_t counted = (path + i) % _paths.size();
-            if (const PeerTable::Peer *const peer = _paths[counted]->Beats().Peers().Find(node))
-            {
-                _choice.Missed(node, counted, peer->Beats, now);
-            }
-        }
+        Forget(node, path);
     }
     if (_paths.size() > 1 && (heard.State || heard.NewLife || heard.Offers))
     {
         for (const PeerTable::Peer *peer : beats.Peers().Heard())
         {
-            _choice.Heard(peer->Node, path, peer->State, peer->HearsHereFirst, now);
+            _choice.Heard(peer->Node, path, peer->State, peer->HearsHereFirst);
             ShareOffers(*peer, beats, change);
         }
     }
@@ -100,7 +77,7 @@ void GatewayManager::Parts::TakeIn(std::size_t path, const PeerTable::Change &he
     {
         for (const std::string &tool : beats.Peers().HeardTools())
         {
-            _choice.Heard(tool, path, Gateway::NodeState::UP, false, now);
+            _choice.Heard(tool, path, Gateway::NodeState::UP, false);
         }
     }
     if (heard.NewLife)
@@ -128,14 +105,14 @@ void GatewayManager::Parts::ShareOffers(const PeerTable::Peer &peer, Presence &b
     }
 }
 
-void GatewayManager::Parts::Forget(const std::string &node, std::size_t path, Duration now)
+void GatewayManager::Parts::Forget(const std::string &node, std::size_t path)
 {
     const bool isKnownElsewhere =
         std::any_of(_paths.begin(), _paths.end(),
                     [&node](const auto &other) { return other->Beats().Peers().Find(node) != nullptr; });
     if (isKnownElsewhere)
     {
-        _choice.Heard(node, path, Gateway::NodeState::LOST, false, now);
+        _choice.Heard(node, path, Gateway::NodeState::LOST, false);
         return;
     }
     _choice.Forget(node);
@@ -144,23 +121,26 @@ void GatewayManager::Parts::Forget(const std::string &node, std::size_t path, Du
     _outgoing->Forget(node);
 }
 
-void GatewayManager::Parts::LookForLateBeats(Duration now)
+void GatewayManager::Parts::LookAtBeats(Duration now)
 {
-    _nextLateLook = now + LateLookPeriod;
+    _nextLook = now + LookPeriod;
     for (std::size_t path = 0; path < _paths.size(); ++path)
     {
         for (const PeerTable::Peer *peer : _paths[path]->Beats().Peers().Heard())
         {
-            _choice.Late(peer->Node, path, IsLate(*peer, now));
+            _choice.Look(
+                peer->Node, path,
+                {peer->Incarnation, peer->Beats,
+                 std::max(now - peer->LastHeard - peer->Period, peer->Clock.LastDelay()), peer->Period});
         }
     }
 }
 
 void GatewayManager::Parts::ChoosePaths(Heard &change, Duration now)
 {
-    if (now >= _nextLateLook)
+    if (now >= _nextLook)
     {
-        LookForLateBeats(now);
+        LookAtBeats(now);
     }
     for (const auto &[node, came] : _links.TakeCameBy())
     {
@@ -183,7 +163,7 @@ void GatewayManager::Parts::ChoosePaths(Heard &change, Duration now)
             _links.ProbeNow(node);
         }
     }
-    for (const std::string &node : _choice.TakeChanged(now))
+    for (const std::string &node : _choice.TakeChanged())
     {
         GatewayPath &path = *_paths[_choice.Of(node)];
         path.Beats().Publish(node);

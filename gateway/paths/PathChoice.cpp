@@ -15,144 +15,61 @@ PathChoice::PathChoice(std::size_t paths, std::vector<double> budgets)
     _budgets.resize(paths, std::numeric_limits<double>::infinity());
 }
 
-PathChoice::Node &PathChoice::NodeOf(const std::string &node)
-{
-    Node &found = _nodes[node];
-    found.Ways.resize(_paths);
-    return found;
-}
-
-void PathChoice::Fail(Node &node, std::size_t path, Duration now) const
-{
-    Way &way = node.Ways[path];
-    if (way.IsSound(now))
-    {
-        way.Rest.Reset();
-    }
-    way.RestFor = way.Rest.Next();
-    bool isBest = true;  // of those on which the node is UP, by their budgets
-    for (std::size_t other = 0; other < _paths; ++other)
-    {
-        isBest = isBest && (other == path || node.Ways[other].State != NodeState::UP ||
-                            _budgets[other] < _budgets[path]);
-    }
-    if (isBest)
-    {
-        way.RestFor = std::min(way.RestFor, ShortRest);
-    }
-    way.RestsUntil = now + way.RestFor;
-}
-
-void PathChoice::Heard(const std::string &node, std::size_t path, NodeState state, bool hearsHereFirst,
-                       Duration now)
+void PathChoice::Heard(const std::string &node, std::size_t path, NodeState state, bool hearsHereFirst)
 {
     if (_paths == 1)
     {
         return;
     }
-    Node &of = NodeOf(node);
+    Node &of = _nodes[node];
+    of.Ways.resize(_paths);
     Way &way = of.Ways.at(path);
-    const bool heard = std::exchange(way.HearsHereFirst, hearsHereFirst);
-    const NodeState before = std::exchange(way.State, state);
-    if (before == state && heard == hearsHereFirst)
-    {
-        return;
-    }
-    if (before == NodeState::UP && state != NodeState::UP)
-    {
-        Fail(of, path, now);
-    }
-    else if (before != NodeState::UP && state == NodeState::UP && way.RestsUntil)
-    {
-        // The rest begins when the path is there again.
-        way.RestsUntil = now + way.RestFor;
-    }
-    if (heard && !hearsHereFirst)
+    way.State = state;
+    if (std::exchange(way.HearsHereFirst, hearsHereFirst) && !hearsHereFirst)
     {
         // The node hears this one by an earlier path again, which has to prove itself.
-        for (std::size_t earlier = 0; earlier < path; ++earlier)
-        {
-            Way &proving = of.Ways[earlier];
-            if (proving.IsSound(now))
-            {
-                proving.Rest.Reset();
-            }
-            proving.RestsUntil = std::max(proving.RestsUntil.value_or(now), now);
-        }
+        std::for_each(of.Ways.begin(), of.Ways.begin() + static_cast<std::ptrdiff_t>(path),
+                      [](Way &earlier) { earlier.Missed = std::max(earlier.Missed, Return); });
     }
-    Choose(node, of, now);
+    _isNew = true;
 }
 
-void PathChoice::Missed(const std::string &node, std::size_t path, const BeatCount &beats, Duration now)
-{
-    if (_paths == 1)
-    {
-        return;
-    }
-    Node &of = NodeOf(node);
-    Way &way = of.Ways.at(path);
-    BeatCount before = std::exchange(way.Beats, beats);
-    if (beats.Heard() < before.Heard() || beats.Missed() < before.Missed())
-    {
-        before = BeatCount();  // of an earlier incarnation
-    }
-    if (way.State != NodeState::UP)
-    {
-        way.Missed = 0.0;  // it has failed for these
-        return;
-    }
-    const auto came = static_cast<double>(beats.Heard() - before.Heard());
-    way.Missed = std::max(way.Missed - MissedForgiven * came, 0.0) +
-                 static_cast<double>(beats.Missed() - before.Missed());
-    const bool isOver = way.Missed >= MostMissed;
-    way.Missed = std::min(way.Missed, MostMissed);
-    if (isOver && beats.Missed() > before.Missed() && !way.Rests(now) && IsAnyBetter(of, path, now))
-    {
-        Fail(of, path, now);
-        Choose(node, of, now);
-    }
-}
-
-bool PathChoice::IsAnyBetter(const Node &node, std::size_t path, Duration now) const
-{
-    for (std::size_t other = 0; other < _paths; ++other)
-    {
-        const Way &way = node.Ways[other];
-        if (other != path && way.State == NodeState::UP && !way.Rests(now) && way.Missed <= MostMissed / 2 &&
-            _budgets[other] >= _budgets[path])
-        {
-            return true;
-        }
-    }
-    return false;
-}
-
-bool PathChoice::Unanswered(const std::string &node, Duration now)
+void PathChoice::Look(const std::string &node, std::size_t path, const Beats &beats)
 {
     const auto found = _nodes.find(node);
     if (_paths == 1 || found == _nodes.end())
     {
-        return false;
+        return;
     }
     Node &of = found->second;
-    const std::optional<std::size_t> other = Other(of, now);
-    if (!other)
+    if (beats.Incarnation > of.Incarnation)
     {
-        return false;
+        of.Incarnation = beats.Incarnation;
+        for (Way &each : of.Ways)
+        {
+            each.Count = {};
+            each.Missed = each.Overdue = 0.0;
+        }
     }
-    const bool isNew = of.Second != other || now >= of.SecondUntil;
-    of.Second = other;
-    of.SecondUntil = now + Both;
-    return isNew;
+    Way &way = of.Ways.at(path);
+    const double overdue = std::chrono::duration<double>(beats.Overdue) / beats.Period;
+    way.Overdue = beats.Incarnation < of.Incarnation ? Most : std::clamp(overdue, 0.0, Most);
+    const BeatCount before = std::exchange(way.Count, beats.Count);
+    // Smaller numbers: the beats are counted anew.
+    const bool goesOn = beats.Count.Heard() >= before.Heard() && beats.Count.Missed() >= before.Missed();
+    const double came = static_cast<double>(beats.Count.Heard() - (goesOn ? before.Heard() : 0));
+    const double missed = static_cast<double>(beats.Count.Missed() - (goesOn ? before.Missed() : 0));
+    way.Missed = std::max(std::min(way.Missed + missed, Most) - Forgiven * came, 0.0);
+    _isNew = true;
 }
 
-std::optional<std::size_t> PathChoice::Other(const Node &node, Duration now) const
+std::optional<std::size_t> PathChoice::Other(const Node &node, std::size_t than)
 {
     std::optional<std::size_t> other;
-    for (std::size_t path = 0; path < _paths; ++path)
+    for (std::size_t path = 0; path < node.Ways.size(); ++path)
     {
-        if (path != node.Choice && node.Ways[path].State == NodeState::UP &&
-            (!other || (!node.Ways[*other].IsSteady(now) && node.Ways[path].IsSteady(now))))
+        if (path != than && node.Ways[path].IsUp() &&
+            (!other || node.Ways[path].Debt() < node.Ways[*other].Debt()))
         {
             other = path;
         }
@@ -160,13 +77,43 @@ std::optional<std::size_t> PathChoice::Other(const Node &node, Duration now) con
     return other;
 }
 
-void PathChoice::Late(const std::string &node, std::size_t path, bool isLate)
+std::optional<std::size_t> PathChoice::Best(const Node &node, std::size_t from, std::size_t present) const
+{
+    const auto mayBeUsed = [&](std::size_t path)
+    {
+        if (!node.Ways[path].IsUp())
+        {
+            return false;
+        }
+        for (std::size_t other = from; other < _paths; ++other)
+        {
+            const double more =
+                (path == present ? Leave : Return) + (_budgets[other] < _budgets[path] ? Slow : 0.0);
+            if (node.Ways[other].IsUp() && node.Ways[path].Debt() > node.Ways[other].Debt() + more)
+            {
+                return false;
+            }
+        }
+        return true;
+    };
+    for (std::size_t path = from; path < _paths; ++path)
+    {
+        if (mayBeUsed(path))
+        {
+            return path;
+        }
+    }
+    return std::nullopt;
+}
+
+bool PathChoice::Unanswered(const std::string &node, Duration now)
 {
     const auto found = _nodes.find(node);
-    if (_paths > 1 && found != _nodes.end())
+    if (found == _nodes.end() || !Other(found->second, found->second.Choice))
     {
-        found->second.Ways[path].IsLate = isLate;
+        return false;
     }
+    return std::exchange(found->second.DoubtUntil, now + Both) <= now;
 }
 
 void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
@@ -180,89 +127,44 @@ void PathChoice::CameBy(const std::string &node, std::size_t path, Duration now)
     of.Ways[path].CameAt = now;
     if (path != of.Choice && now - of.Ways[of.Choice].CameAt >= Silence)
     {
-        of.Second = path;
-        of.SecondUntil = now + Both;
+        of.DoubtUntil = now + Both;
     }
 }
 
 void PathChoice::MessageCameBy(const std::string &node, std::size_t path, Duration now)
 {
     const auto found = _nodes.find(node);
-    if (_paths > 1 && found != _nodes.end() && path != found->second.Choice)
+    if (found != _nodes.end() && path != found->second.Choice)
     {
         found->second.AnswersBy = path;
         found->second.AnswersUntil = now + AnswersToo;
     }
 }
 
-void PathChoice::ChooseHeard(Node &node, Duration now)
+std::vector<std::string> PathChoice::TakeChanged()
 {
-    std::size_t first = _paths;
-    bool firstRests = true;
-    for (std::size_t path = 0; path < _paths; ++path)
+    std::vector<std::string> changed;
+    if (!std::exchange(_isNew, false))
     {
-        const Way &way = node.Ways[path];
-        if (way.State != NodeState::UP)
+        return changed;
+    }
+    for (auto &[name, node] : _nodes)
+    {
+        const std::size_t heard = Best(node, 0, node.FirstHeardOn).value_or(_paths);
+        _firstHeardChanged |= std::exchange(node.FirstHeardOn, heard) != heard;
+        std::size_t from = 0;  // by an earlier path the node does not hear this one
+        for (std::size_t path = 0; path < _paths; ++path)
         {
-            continue;
+            from = node.Ways[path].IsUp() && node.Ways[path].HearsHereFirst ? path : from;
         }
-        const bool rests = way.Rests(now);
-        if (rests)
+        const std::size_t next = Best(node, from, node.Choice).value_or(node.Choice);
+        if (std::exchange(node.Choice, next) != next)
         {
-            _due = _due ? std::min(*_due, *way.RestsUntil) : *way.RestsUntil;
-        }
-        if (first == _paths || (firstRests && !rests))
-        {
-            first = path;
-            firstRests = rests;
+            node.DoubtUntil = {};
+            changed.push_back(name);
         }
     }
-    _firstHeardChanged |= std::exchange(node.FirstHeardOn, first) != first;
-}
-
-void PathChoice::Choose(const std::string &name, Node &node, Duration now)
-{
-    // By a path before this one the node does not hear this node.
-    std::size_t first = 0;
-    for (std::size_t path = 0; path < _paths; ++path)
-    {
-        first = node.Ways[path].State == NodeState::UP && node.Ways[path].HearsHereFirst ? path : first;
-    }
-    ChooseHeard(node, now);
-    std::optional<std::size_t> rested;  // that is UP and rests
-    std::optional<std::size_t> chosen;
-    for (std::size_t path = first; path < _paths && !chosen; ++path)
-    {
-        const Way &way = node.Ways[path];
-        if (way.State == NodeState::UP && !way.Rests(now))
-        {
-            chosen = path;
-        }
-        else if (way.State == NodeState::UP)
-        {
-            // With nothing but paths that rest, the present one stays.
-            rested = path == node.Choice || !rested ? path : rested;
-        }
-    }
-    const std::size_t next = chosen.value_or(rested.value_or(node.Choice));
-    if (std::exchange(node.Choice, next) != next)
-    {
-        _changed.push_back(name);
-        node.Second.reset();
-    }
-}
-
-std::vector<std::string> PathChoice::TakeChanged(Duration now)
-{
-    if (_due && *_due <= now)
-    {
-        _due.reset();
-        for (auto &[name, node] : _nodes)
-        {
-            Choose(name, node, now);
-        }
-    }
-    return std::exchange(_changed, {});
+    return changed;
 }
 
 std::size_t PathChoice::Of(std::string_view node) const
@@ -279,17 +181,13 @@ std::optional<std::size_t> PathChoice::Second(std::string_view node, Duration no
         return std::nullopt;
     }
     const Node &of = found->second;
-    if (of.Second && now < of.SecondUntil && of.Ways[*of.Second].State == NodeState::UP)
-    {
-        return of.Second;
-    }
-    const Way &chosen = of.Ways[of.Choice];
-    const std::optional<std::size_t> other = chosen.IsSteady(now) ? std::nullopt : Other(of, now);
-    if (other && (chosen.IsLate || of.Ways[*other].IsSteady(now)))
+    const std::optional<std::size_t> other = Other(of, of.Choice);
+    if (other && (now < of.DoubtUntil || of.Ways[of.Choice].Debt() > of.Ways[*other].Debt() + Doubt))
     {
         return other;
     }
-    return isAnswer && of.AnswersBy != of.Choice && now < of.AnswersUntil ? of.AnswersBy : std::nullopt;
+    return isAnswer && of.AnswersBy != of.Choice && now < of.AnswersUntil ? std::optional(of.AnswersBy)
+                                                                          : std::nullopt;
 }
 
 std::vector<std::string> PathChoice::FirstHeardOn(std::size_t path) const

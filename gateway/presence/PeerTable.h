@@ -137,10 +137,8 @@ public:
         bool State = false;                  // a state or an incarnation changed: worth posting
         bool NewLife = false;                // a node is UP in an incarnation that was not known
         bool Offers = false;                 // an announcement said something new
-        std::vector<std::string> Missed;     // nodes of which beats before that one did not come
         std::vector<std::string> Forgotten;  // nodes that made room for another one, and tools that are gone
 
-        // Beats are missed only if one comes.
         bool Any() const { return Beat || State || NewLife || Offers || !Forgotten.empty(); }
     };
 

@@ -17,12 +17,7 @@ using Gateway::NodeState;
 void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
 {
     Measure(peer, heard);
-    const std::uint64_t missed = peer.Beats.Missed();
     peer.Beats.Add(heard.Sequence);
-    if (peer.Beats.Missed() != missed)
-    {
-        change.Missed.push_back(peer.Node);
-    }
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
     peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
     const bool hearsHereFirst =

@@ -110,7 +110,6 @@ void Presence::WakeIf(bool somethingCame)
 void Presence::Served::Clear()
 {
     Change.Beat = Change.State = Change.NewLife = Change.Offers = false;
-    Change.Missed.clear();
     Change.Forgotten.clear();
     StatesTold.clear();
     StatesAsked.clear();
@@ -297,7 +296,6 @@ void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)
 void Presence::Note(const PeerTable::Change &change, const std::string &node, Served &served)
 {
     served.Change.Beat |= change.Beat;
-    served.Change.Missed.insert(served.Change.Missed.end(), change.Missed.begin(), change.Missed.end());
     served.Change.State |= change.State;
     served.Change.NewLife |= change.NewLife;
     served.Change.Offers |= change.Offers;

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "paths/PathChoice.h"
@@ -14,131 +16,164 @@ using Gateway::NodeState;
 
 constexpr std::size_t Mesh = 0;
 constexpr std::size_t Modem = 1;
+constexpr PathChoice::Duration Period = 500ms;
 
+// A node whose beats by each path are made one after another.
 class PathChoiceTest : public ::testing::Test
 {
 protected:
-    void Hear(std::size_t path, NodeState state, PathChoice::Duration now)
+    explicit PathChoiceTest(std::vector<double> budgets = {}) : choice(2, std::move(budgets))
     {
-        choice.Heard("uav1", path, state, false, now);
-    }
-    std::size_t ChosenAt(PathChoice::Duration now)
-    {
-        changed = choice.TakeChanged(now);
-        return choice.Of("uav1");
-    }
-    // A failure of the mesh at that time, and its return a second later.
-    void FailMesh(PathChoice::Duration now)
-    {
-        Hear(Mesh, NodeState::STALE, now);
-        Hear(Mesh, NodeState::UP, now + 1s);
+        for (const std::size_t path : {Mesh, Modem})
+        {
+            Hear(path, NodeState::UP);
+            Beat(path);
+        }
     }
 
-    PathChoice choice{2};
+    void Hear(std::size_t path, NodeState state, bool hearsHereFirst = false)
+    {
+        choice.Heard("uav1", path, state, hearsHereFirst);
+    }
+    // That many beats do not come by that path, and then one comes.
+    void Beat(std::size_t path, std::uint64_t missed = 0)
+    {
+        numbers[path] += missed + 1;
+        counts[path].Add(numbers[path]);
+        choice.Look("uav1", path, {incarnation, counts[path], 0ms, Period});
+    }
+    void Beats(std::size_t path, int count)
+    {
+        for (int i = 0; i < count; ++i)
+        {
+            Beat(path);
+        }
+    }
+    // The next beat by that path is overdue for this time.
+    void Silent(std::size_t path, PathChoice::Duration overdue)
+    {
+        choice.Look("uav1", path, {incarnation, counts[path], overdue, Period});
+    }
+    void StartAgain(std::size_t path)
+    {
+        ++incarnation;
+        counts = {};
+        Beat(path);
+    }
+    std::size_t Chosen()
+    {
+        changed = choice.TakeChanged();
+        return choice.Of("uav1");
+    }
+    bool HasSecond(PathChoice::Duration now = 5s) { return choice.Second("uav1", now).has_value(); }
+
+    PathChoice choice;
     std::vector<std::string> changed;
+    std::uint64_t incarnation = 1;
+    std::array<BeatCount, 2> counts;
+    std::array<std::uint64_t, 2> numbers{};
 };
 
 TEST_F(PathChoiceTest, ANodeIsReachedByTheFirstPathOnWhichItIsUp)
 {
-    Hear(Modem, NodeState::UP, 0s);
-    EXPECT_EQ(ChosenAt(0s), Modem);
-    Hear(Mesh, NodeState::UP, 1s);
-    EXPECT_EQ(ChosenAt(1s), Mesh);
+    Hear(Mesh, NodeState::STALE);
+    EXPECT_EQ(Chosen(), Modem);
+    Hear(Mesh, NodeState::UP);
+    EXPECT_EQ(Chosen(), Mesh);
     EXPECT_EQ(changed, std::vector<std::string>{"uav1"});
 }
 
-TEST_F(PathChoiceTest, ADeadPathIsLeft)
+TEST_F(PathChoiceTest, APathIsLeftWhenFourBeatsAreOverdue)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    Hear(Mesh, NodeState::STALE, 5s);
-    EXPECT_EQ(ChosenAt(5s), Modem);
+    Silent(Mesh, 4 * Period);
+    EXPECT_EQ(Chosen(), Mesh);
+    Silent(Mesh, 4 * Period + 1ms);
+    EXPECT_EQ(Chosen(), Modem);
 }
 
-TEST_F(PathChoiceTest, APathThatReturnsRestsForASecond)
+TEST_F(PathChoiceTest, APathThatReturnsIsTakenWhenItOwesLessThanABeat)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    FailMesh(5s);
-    EXPECT_EQ(ChosenAt(6900ms), Modem);
-    ASSERT_TRUE(choice.Due());
-    EXPECT_EQ(*choice.Due(), 7s);
-    EXPECT_EQ(ChosenAt(7s), Mesh);
+    Silent(Mesh, 5 * Period);
+    EXPECT_EQ(Chosen(), Modem);
+    Beat(Mesh, 3);
+    EXPECT_EQ(Chosen(), Modem);
+    Beats(Mesh, 2);
+    EXPECT_EQ(Chosen(), Modem);
+    Beat(Mesh);
+    EXPECT_EQ(Chosen(), Mesh);
 }
 
-TEST_F(PathChoiceTest, APathThatComesAndGoesRestsForLongerAndLonger)
+TEST_F(PathChoiceTest, APathThatComesAndGoesIsLeftAlone)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    FailMesh(5s);
-    FailMesh(7s);
-    FailMesh(9s);
-    EXPECT_EQ(ChosenAt(13900ms), Modem);
-    EXPECT_EQ(ChosenAt(14s), Mesh);
+    for (int i = 0; i < 5; ++i)
+    {
+        Beat(Mesh, 3);
+        Beats(Mesh, 2);
+    }
+    for (int i = 0; i < 20; ++i)
+    {
+        Beat(Mesh, 3);
+        EXPECT_EQ(Chosen(), Modem);
+        Beats(Mesh, 2);
+        EXPECT_EQ(Chosen(), Modem);
+    }
 }
 
-TEST_F(PathChoiceTest, APathThatWasSoundForTenSecondsRestsForASecondAgain)
+TEST_F(PathChoiceTest, NoDebtIsLargerThanFourteenBeatsEnd)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    FailMesh(5s);
-    FailMesh(7s);
-    FailMesh(21s);
-    EXPECT_EQ(ChosenAt(23s), Mesh);
+    Beat(Mesh, 5000);
+    EXPECT_EQ(Chosen(), Modem);
+    Beats(Mesh, 13);
+    EXPECT_EQ(Chosen(), Mesh);
 }
 
 TEST_F(PathChoiceTest, IfAllPathsAreDeadTheLastOneStays)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    Hear(Mesh, NodeState::LOST, 5s);
-    Hear(Modem, NodeState::LOST, 6s);
-    EXPECT_EQ(ChosenAt(6s), Modem);
+    Hear(Mesh, NodeState::LOST);
+    EXPECT_EQ(Chosen(), Modem);
+    Hear(Modem, NodeState::LOST);
+    EXPECT_EQ(Chosen(), Modem);
 }
 
-TEST_F(PathChoiceTest, APathThatRestsIsBetterThanNone)
+TEST_F(PathChoiceTest, APathInDebtIsBetterThanNone)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    FailMesh(5s);
-    Hear(Modem, NodeState::LOST, 6s);
-    EXPECT_EQ(ChosenAt(6s), Mesh);
+    Beat(Mesh, 8);
+    EXPECT_EQ(Chosen(), Modem);
+    Hear(Modem, NodeState::LOST);
+    EXPECT_EQ(Chosen(), Mesh);
 }
 
 TEST_F(PathChoiceTest, WhileAnAnswerIsMissingFramesGoByBothPaths)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    choice.Unanswered("uav1", 5s);
-    EXPECT_EQ(ChosenAt(5s), Mesh);
-    EXPECT_EQ(choice.Second("uav1", 5s), Modem);
-}
-
-TEST_F(PathChoiceTest, ADoubtEndsSomeTimeAfterItsLastSignThoughNoFrameComes)
-{
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    choice.Unanswered("uav1", 5s);
-    choice.Unanswered("uav1", 6s);
+    EXPECT_FALSE(HasSecond());
+    EXPECT_TRUE(choice.Unanswered("uav1", 5s));
+    EXPECT_FALSE(choice.Unanswered("uav1", 6s)) << "the same doubt";
+    EXPECT_EQ(Chosen(), Mesh);
     EXPECT_EQ(choice.Second("uav1", 6s + PathChoice::Both - 1ms), Modem);
     EXPECT_EQ(choice.Second("uav1", 6s + PathChoice::Both), std::nullopt);
-    choice.CameBy("uav1", Modem, 20s);
-    EXPECT_EQ(choice.Second("uav1", 20s + PathChoice::Both - 1ms), Modem);
-    EXPECT_EQ(choice.Second("uav1", 20s + PathChoice::Both), std::nullopt);
+    EXPECT_TRUE(choice.Unanswered("uav1", 6s + PathChoice::Both));
+}
+
+TEST_F(PathChoiceTest, ANodeWhoseFramesComeByAnotherPathAloneIsReachedByBoth)
+{
+    choice.CameBy("uav1", Mesh, 5s);
+    choice.CameBy("uav1", Modem, 5050ms);
+    EXPECT_FALSE(HasSecond(5050ms)) << "one came by the mesh a moment ago";
+    choice.CameBy("uav1", Modem, 5s + PathChoice::Silence);
+    EXPECT_EQ(Chosen(), Mesh);
+    EXPECT_TRUE(HasSecond(5s + PathChoice::Silence + PathChoice::Both - 1ms));
+    EXPECT_FALSE(HasSecond(5s + PathChoice::Silence + PathChoice::Both));
 }
 
 TEST_F(PathChoiceTest, ADeadNodeHasNoSecondPath)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
     choice.Unanswered("uav1", 5s);
-    Hear(Modem, NodeState::LOST, 6s);
-    EXPECT_EQ(choice.Second("uav1", 6s), std::nullopt);
-    Hear(Mesh, NodeState::LOST, 6s);
-    EXPECT_FALSE(choice.Unanswered("uav1", 6s));
-    choice.CameBy("uav1", Modem, 6s);
-    EXPECT_EQ(choice.Second("uav1", 6s), std::nullopt);
-    EXPECT_FALSE(choice.IsSecondOfAny(Modem, 6s));
+    Hear(Modem, NodeState::LOST);
+    EXPECT_FALSE(HasSecond(6s));
+    Hear(Mesh, NodeState::LOST);
+    EXPECT_FALSE(choice.Unanswered("uav1", 8s));
+    EXPECT_FALSE(HasSecond(8s));
+    EXPECT_FALSE(choice.IsSecondOfAny(Modem, 8s));
 }
 
 TEST(PathChoiceOfThreePaths, TakesAnotherSecondPathIfThatOneDies)
@@ -146,226 +181,157 @@ TEST(PathChoiceOfThreePaths, TakesAnotherSecondPathIfThatOneDies)
     PathChoice choice{3};
     for (const std::size_t path : {0U, 1U, 2U})
     {
-        choice.Heard("uav1", path, NodeState::UP, false, 0s);
+        choice.Heard("uav1", path, NodeState::UP, false);
     }
     choice.Unanswered("uav1", 5s);
     EXPECT_EQ(choice.Second("uav1", 5s), 1U);
-    choice.Heard("uav1", 1, NodeState::LOST, false, 5500ms);
-    choice.Late("uav1", 0, true);
+    choice.Heard("uav1", 1, NodeState::LOST, false);
     EXPECT_EQ(choice.Second("uav1", 5500ms), 2U);
 }
 
-TEST_F(PathChoiceTest, AMissingAnswerIsNewsThoughFramesGoByBothPathsAlready)
+TEST_F(PathChoiceTest, APathIsUsedWithAnotherWhileABeatIsLate)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    choice.Late("uav1", Mesh, true);
-    EXPECT_TRUE(choice.Unanswered("uav1", 5s));
-    EXPECT_FALSE(choice.Unanswered("uav1", 5100ms)) << "still the same";
-    EXPECT_TRUE(choice.Unanswered("uav1", 5100ms + PathChoice::Both));
-}
-
-TEST_F(PathChoiceTest, APathThatFailedHasCompanyUntilItIsSoundAgain)
-{
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    FailMesh(5s);
-    EXPECT_EQ(ChosenAt(7s), Mesh);
-    EXPECT_EQ(choice.Second("uav1", 7s), Modem);
-    EXPECT_TRUE(choice.IsSecondOfAny(Modem, 7s));
-    EXPECT_EQ(choice.Second("uav1", 7s + PathChoice::Sound), Modem);
-    EXPECT_EQ(choice.Second("uav1", 7s + PathChoice::Sound + 1ms), std::nullopt);
-    EXPECT_FALSE(choice.IsSecondOfAny(Modem, 7s + PathChoice::Sound + 1ms));
-}
-
-TEST_F(PathChoiceTest, IfAllPathsHaveFailedNoneIsCompanyForAnother)
-{
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    Hear(Modem, NodeState::LOST, 5s);
-    FailMesh(5s);
-    Hear(Modem, NodeState::UP, 6s);
-    EXPECT_EQ(ChosenAt(8s), Mesh);
-    EXPECT_EQ(choice.Second("uav1", 8s), std::nullopt);
-}
-
-TEST_F(PathChoiceTest, WhileABeatIsLateTheOtherPathIsUsedAsWell)
-{
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    choice.Late("uav1", Mesh, true);
-    EXPECT_EQ(ChosenAt(5s), Mesh);
+    Silent(Mesh, Period / 4);
+    EXPECT_FALSE(HasSecond());
+    Silent(Mesh, Period / 4 + 1ms);
     EXPECT_EQ(choice.Second("uav1", 5s), Modem);
-    choice.Late("uav1", Mesh, false);
-    EXPECT_EQ(choice.Second("uav1", 5s), std::nullopt);
+    EXPECT_TRUE(choice.IsSecondOfAny(Modem, 5s));
+    EXPECT_EQ(Chosen(), Mesh);
+    Beat(Mesh);
+    EXPECT_FALSE(HasSecond());
 }
 
-TEST(PathChoiceOfABigAndASmallPath, LeavesTheBigOneForSomeSecondsAtMost)
+TEST_F(PathChoiceTest, APathThatFailedIsUsedWithAnotherUntilItsDebtIsPaid)
 {
-    PathChoice choice(2, {1e6, 1500});
-    choice.Heard("uav1", Mesh, NodeState::UP, false, 0s);
-    choice.Heard("uav1", Modem, NodeState::UP, false, 0s);
-    for (const PathChoice::Duration now : {5s, 7s, 9s, 11s, 13s})
+    Beat(Mesh, 5);
+    EXPECT_EQ(Chosen(), Modem);
+    Beats(Mesh, 7);
+    EXPECT_EQ(Chosen(), Mesh);
+    EXPECT_TRUE(HasSecond());
+    Beats(Mesh, 2);
+    EXPECT_FALSE(HasSecond());
+}
+
+TEST_F(PathChoiceTest, IfAllPathsAreInDebtNoneIsUsedWithAnother)
+{
+    Beat(Mesh, 6);
+    Beat(Modem, 6);
+    EXPECT_EQ(Chosen(), Mesh);
+    EXPECT_FALSE(HasSecond());
+}
+
+TEST_F(PathChoiceTest, ANodeThatStartsAgainOwesNothing)
+{
+    for (int i = 0; i < 10; ++i)
     {
-        choice.Heard("uav1", Mesh, NodeState::STALE, false, now);
-        choice.Heard("uav1", Mesh, NodeState::UP, false, now + 1s);
+        Silent(Mesh, 5 * Period);
+        Silent(Modem, 5 * Period);
+        Hear(Mesh, NodeState::STALE);
+        EXPECT_EQ(Chosen(), Modem) << "whose beats are rarer";
+        StartAgain(Mesh);
+        Hear(Mesh, NodeState::UP);
+        EXPECT_EQ(Chosen(), Mesh);
+        EXPECT_FALSE(HasSecond());
+        Beat(Modem);
     }
-    choice.TakeChanged(14s + PathChoice::ShortRest - 1ms);
-    EXPECT_EQ(choice.Of("uav1"), Modem);
-    choice.TakeChanged(14s + PathChoice::ShortRest);
-    EXPECT_EQ(choice.Of("uav1"), Mesh);
 }
 
-// Beats of a path that come and do not come, in turns, from that time on. Returns when the last
-// loss was noticed.
-PathChoice::Duration Lose(PathChoice &choice, int missed, int came, int times, PathChoice::Duration now,
-                          std::size_t path = Mesh)
+TEST_F(PathChoiceTest, BeatsOfAnEarlierLifeOweAll)
 {
-    BeatCount beats;
-    std::uint64_t number = 1;
-    PathChoice::Duration noticed = now;
-    beats.Add(number);
-    for (int i = 0; i < times; ++i)
-    {
-        number += static_cast<std::uint64_t>(missed);
-        for (int j = 0; j < came; ++j)
-        {
-            beats.Add(++number);
-            now += 500ms;
-            if (j == 0)
-            {
-                choice.Missed("uav1", path, beats, now);
-                noticed = now;
-            }
-        }
-    }
-    return noticed;
+    StartAgain(Modem);
+    BeatCount old;
+    old.Add(100);
+    choice.Look("uav1", Mesh, {incarnation - 1, old, 0ms, Period});
+    EXPECT_EQ(Chosen(), Modem);
 }
 
-TEST_F(PathChoiceTest, APathByWhichManyBeatsDoNotComeIsLeftThoughItStaysUp)
+class PathChoiceOfABigAndASmallPath : public PathChoiceTest
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    const PathChoice::Duration now = Lose(choice, 2, 2, 3, 5s);
-    EXPECT_EQ(ChosenAt(now), Modem);
-    EXPECT_EQ(choice.FirstHeardOn(Modem), std::vector<std::string>{"uav1"});
-    EXPECT_EQ(ChosenAt(now + 1s), Mesh);
-    EXPECT_TRUE(choice.TakeFirstHeardChanged());
-    EXPECT_TRUE(choice.FirstHeardOn(Modem).empty());
+protected:
+    PathChoiceOfABigAndASmallPath() : PathChoiceTest({1e6, 1500}) {}
+};
+
+TEST_F(PathChoiceOfABigAndASmallPath, TheBigOneMayOweMore)
+{
+    Beat(Mesh, 6);
+    EXPECT_EQ(Chosen(), Mesh);
+    EXPECT_TRUE(HasSecond());
 }
 
-TEST_F(PathChoiceTest, BeatsThatAreMissedDuringARestAreNoSecondFailure)
+TEST_F(PathChoiceOfABigAndASmallPath, TheBigOneIsTakenAgainSoonAfterALongSilence)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    const PathChoice::Duration now = Lose(choice, 2, 2, 3, 5s);
-    Lose(choice, 2, 1, 1, now);
-    EXPECT_EQ(ChosenAt(now + 900ms), Modem);
-    EXPECT_EQ(ChosenAt(now + 1s), Mesh);
+    Hear(Mesh, NodeState::STALE);
+    EXPECT_EQ(Chosen(), Modem);
+    Beat(Mesh, 100);
+    Hear(Mesh, NodeState::UP);
+    EXPECT_EQ(Chosen(), Modem);
+    Beats(Mesh, 5);
+    EXPECT_EQ(Chosen(), Mesh);
 }
 
 TEST_F(PathChoiceTest, ALossyPathIsKeptIfTheOtherLosesAsMuch)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    Lose(choice, 2, 2, 3, 5s, Modem);
-    EXPECT_EQ(ChosenAt(Lose(choice, 2, 2, 3, 20s)), Mesh);
+    for (int i = 0; i < 10; ++i)
+    {
+        Beat(Mesh, 2);
+        Beat(Modem, 2);
+        EXPECT_EQ(Chosen(), Mesh);
+    }
 }
 
-TEST_F(PathChoiceTest, ALossyPathIsKeptIfTheOtherHasASmallerBudget)
+TEST_F(PathChoiceTest, APathThatLosesABeatInFourIsKept)
 {
-    PathChoice small(2, {1e6, 1500});
-    small.Heard("uav1", Mesh, NodeState::UP, false, 0s);
-    small.Heard("uav1", Modem, NodeState::UP, false, 0s);
-    small.TakeChanged(Lose(small, 2, 2, 3, 5s));
-    EXPECT_EQ(small.Of("uav1"), Mesh);
-}
-
-TEST_F(PathChoiceTest, APathThatLosesABeatInTenIsKept)
-{
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    EXPECT_EQ(ChosenAt(Lose(choice, 1, 9, 100, 5s)), Mesh);
-}
-
-TEST_F(PathChoiceTest, BeatsThatWereMissedWhileThePathWasDeadAreNoSecondFailure)
-{
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    Hear(Mesh, NodeState::STALE, 5s);
-    Lose(choice, 20, 1, 1, 5500ms);
-    Hear(Mesh, NodeState::UP, 6s);
-    EXPECT_EQ(ChosenAt(7s), Mesh);
+    for (int i = 0; i < 100; ++i)
+    {
+        Beat(Mesh, 1);
+        Beats(Mesh, 2);
+        EXPECT_EQ(Chosen(), Mesh);
+    }
 }
 
 TEST_F(PathChoiceTest, WhileBothEndsLeaveAPathEachTellsTheOtherWhenItHearsWellAgain)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    const PathChoice::Duration now = Lose(choice, 2, 2, 3, 5s);
-    choice.Heard("uav1", Modem, NodeState::UP, true, now);
+    Beat(Mesh, 5);
+    Hear(Modem, NodeState::UP, true);
+    EXPECT_EQ(Chosen(), Modem);
     EXPECT_TRUE(choice.TakeFirstHeardChanged());
-    EXPECT_EQ(ChosenAt(now + 1s), Modem);
+    EXPECT_EQ(choice.FirstHeardOn(Modem), std::vector<std::string>{"uav1"});
+    Beats(Mesh, 7);
+    EXPECT_EQ(Chosen(), Modem);
     EXPECT_TRUE(choice.TakeFirstHeardChanged());
     EXPECT_TRUE(choice.FirstHeardOn(Modem).empty());
 }
 
 TEST_F(PathChoiceTest, ANodeThatHearsThisOneByALaterPathAloneIsReachedByThat)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    choice.Heard("uav1", Modem, NodeState::UP, true, 5s);
-    EXPECT_EQ(ChosenAt(5s), Modem);
-    choice.Heard("uav1", Modem, NodeState::UP, false, 6s);
-    EXPECT_EQ(ChosenAt(6s), Mesh);
+    Hear(Modem, NodeState::UP, true);
+    EXPECT_EQ(Chosen(), Modem);
+    Hear(Modem, NodeState::UP, false);
+    EXPECT_EQ(Chosen(), Mesh);
+    EXPECT_TRUE(HasSecond()) << "until two beats more have come";
+    Beats(Mesh, 2);
+    EXPECT_FALSE(HasSecond());
 }
 
-TEST_F(PathChoiceTest, APathByWhichTheNodeDidNotHearThisOneForAMomentForgetsFailuresOfLongAgo)
+TEST_F(PathChoiceTest, APathIsKeptThoughTheOneThatTheNodeDoesNotHearOwesLess)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    for (const PathChoice::Duration now : {5s, 7s, 9s, 11s, 13s, 15s})
-    {
-        FailMesh(now);
-    }
-    choice.Heard("uav1", Modem, NodeState::UP, true, 3600s);
-    choice.Heard("uav1", Modem, NodeState::UP, false, 3601s);
-    FailMesh(3605s);
-    EXPECT_EQ(ChosenAt(3607s), Mesh);
+    Hear(Modem, NodeState::UP, true);
+    Beat(Modem, 8);
+    EXPECT_EQ(Chosen(), Modem);
 }
 
 TEST_F(PathChoiceTest, TellsWhichNodesAreHeardByALaterPathAlone)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
+    static_cast<void>(Chosen());
     EXPECT_TRUE(choice.FirstHeardOn(Modem).empty());
-    Hear(Mesh, NodeState::STALE, 5s);
+    Hear(Mesh, NodeState::STALE);
+    static_cast<void>(Chosen());
     EXPECT_EQ(choice.FirstHeardOn(Modem), std::vector<std::string>{"uav1"});
     EXPECT_TRUE(choice.FirstHeardOn(Mesh).empty());
 }
 
-TEST_F(PathChoiceTest, AMissingAnswerChangesNothingIfThereIsNoOtherPath)
-{
-    Hear(Mesh, NodeState::UP, 0s);
-    choice.Unanswered("uav1", 5s);
-    EXPECT_EQ(ChosenAt(5s), Mesh);
-    EXPECT_EQ(choice.Second("uav1", 5s), std::nullopt);
-}
-
-TEST_F(PathChoiceTest, WhoSendsByAnotherPathIsAnsweredByBoth)
-{
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    choice.CameBy("uav1", Modem, 5s);
-    EXPECT_EQ(ChosenAt(5s), Mesh);
-    EXPECT_EQ(choice.Second("uav1", 5s), Modem);
-}
-
 TEST_F(PathChoiceTest, MessagesByAnotherPathAreAnsweredByThatPathTooForAWhile)
 {
-    Hear(Mesh, NodeState::UP, 0s);
-    Hear(Modem, NodeState::UP, 0s);
-    choice.CameBy("uav1", Mesh, 5s);
     choice.MessageCameBy("uav1", Mesh, 5s);
     EXPECT_EQ(choice.Second("uav1", 5s, true), std::nullopt);
     choice.MessageCameBy("uav1", Modem, 5s);
@@ -374,11 +340,13 @@ TEST_F(PathChoiceTest, MessagesByAnotherPathAreAnsweredByThatPathTooForAWhile)
     EXPECT_EQ(choice.Second("uav1", 5s + PathChoice::AnswersToo, true), std::nullopt);
 }
 
-TEST_F(PathChoiceTest, APathCarriesIfANodeIsReachedByIt)
+TEST(PathChoiceOfNobody, TheFirstPathCarries)
 {
-    EXPECT_TRUE(choice.CarriesAny(Mesh)) << "before anybody is known";
+    PathChoice choice{2};
+    EXPECT_TRUE(choice.CarriesAny(Mesh));
     EXPECT_FALSE(choice.CarriesAny(Modem));
-    Hear(Modem, NodeState::UP, 0s);
+    choice.Heard("uav1", Modem, NodeState::UP, false);
+    EXPECT_EQ(choice.TakeChanged(), std::vector<std::string>{"uav1"});
     EXPECT_TRUE(choice.CarriesAny(Modem));
     EXPECT_FALSE(choice.CarriesAny(Mesh));
 }
@@ -386,7 +354,7 @@ TEST_F(PathChoiceTest, APathCarriesIfANodeIsReachedByIt)
 TEST(PathChoiceOfOnePath, IsThatPath)
 {
     PathChoice choice{1};
-    choice.Heard("uav1", 0, NodeState::LOST, false, 0s);
+    choice.Heard("uav1", 0, NodeState::LOST, false);
     EXPECT_EQ(choice.Of("uav1"), 0U);
     EXPECT_TRUE(choice.CarriesAny(0));
 }

@@ -28,6 +28,18 @@ MUTATIONS = [
              FLEET),
     Mutation("what is asked for is not written", "StateExchange.cpp", "publishers[_states[place]].AskedFor(now);", "",
              FLEET),
+    # Paths
+    Mutation("beats that came forgive nothing", "PathChoice.cpp", "- Forgiven * came", "- 0.0 * came", PARTS),
+    Mutation("a debt has no end", "PathChoice.cpp", "std::min(way.Missed + missed, Most)", "way.Missed + missed", PARTS),
+    Mutation("a node that starts again owes what it owed", "PathChoice.cpp",
+             "each.Missed = each.Overdue = 0.0;", "", PARTS),
+    Mutation("the path in use is left as soon as another is better", "PathChoice.cpp", "path == present ? Leave : Return",
+             "Return", PARTS),
+    Mutation("a small budget is as good as a large one", "PathChoice.cpp",
+             "_budgets[other] < _budgets[path] ? Slow : 0.0", "0.0", PARTS),
+    Mutation("a path in doubt is used alone", "PathChoice.cpp", "now < of.DoubtUntil ||", "", PARTS),
+    Mutation("frames by another path are no sign", "PathChoice.cpp",
+             "now - of.Ways[of.Choice].CameAt >= Silence", "false", PARTS),
     # Presence
     Mutation("a silent node stays UP", "PeerTable.cpp", "silence > peer.StaleAfter() && peer.State == NodeState::UP", "false",
              FLEET),
