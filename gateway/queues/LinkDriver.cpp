@@ -329,7 +329,7 @@ std::vector<Gateway::LinkStatus> LinkDriver::OutboundStatus() const
 std::vector<Gateway::InboundStatus> LinkDriver::InboundStatus() const
 {
     const std::lock_guard lock(_mutex);
-    return LinkStatus::Inbound(*_links, _incoming);
+    return LinkStatus::Inbound(*_links);
 }
 
 std::vector<Gateway::Problem> LinkDriver::Problems() const

@@ -27,7 +27,7 @@ std::vector<Gateway::LinkStatus> Outbound(const LinkNode &links)
     return status;
 }
 
-std::vector<Gateway::InboundStatus> Inbound(const LinkNode &links, const IncomingQueues & /*incoming*/)
+std::vector<Gateway::InboundStatus> Inbound(const LinkNode &links)
 {
     std::vector<Gateway::InboundStatus> status;
     links.VisitReceivers(

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "gateway.idl.h"
-#include "queues/IncomingQueues.h"
 
 namespace Rabit::LinkStatus
 {
@@ -14,6 +13,6 @@ namespace Rabit::LinkStatus
 // driver.
 
 std::vector<Gateway::LinkStatus> Outbound(const LinkNode &links);
-std::vector<Gateway::InboundStatus> Inbound(const LinkNode &links, const IncomingQueues &incoming);
+std::vector<Gateway::InboundStatus> Inbound(const LinkNode &links);
 
 }  // namespace Rabit::LinkStatus

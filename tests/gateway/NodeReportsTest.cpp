@@ -216,7 +216,7 @@ TEST_F(NodeReportsTest, TellsItsShareOfTheChannel)
     fleet.RunFor(2s);
     const auto air = Ask(explorer, Report::Air);
     ASSERT_TRUE(air.has_value());
-    EXPECT_THAT(air->Text, ::testing::MatchesRegex("([0-9]+ ){8}[0-9]+"));
+    EXPECT_THAT(air->Text, ::testing::MatchesRegex("([0-9]+ ){9}[0-9]+"));
 }
 
 TEST_F(NodeReportsTest, AnEchoTakesTheRoundTrip)
