@@ -167,7 +167,8 @@ void GuardedNode::FromVendor(const Bytes &message)
 {
     _guard.Sending(message);
     const auto to = Dds.PlaceOf(Rabit::DestinationOf(message));
-    if (!_meeting.Sending(message, _now) && (!to || _guard.MayGo(*to, message.size(), _addresses, _now)))
+    if (!_meeting.Sending(message, _now) &&
+        (!to || _guard.MayGo(*to, message.size(), Rabit::Rtps::Ledger::Cargo::Discovery, _addresses, _now)))
     {
         Send(message);
     }
@@ -243,8 +244,9 @@ void GuardedNode::Step(TimePoint now)
     {
         for (const Rabit::Rtps::Place &place : Dds.Readers())
         {
-            SentBytes +=
-                _guard.MayGo(place, SampleSize, _addresses, now) ? SampleSize + CardExchange::IpAndUdp : 0;
+            const bool goes =
+                _guard.MayGo(place, SampleSize, Rabit::Rtps::Ledger::Cargo::Samples, _addresses, now);
+            SentBytes += goes ? SampleSize + CardExchange::IpAndUdp : 0;
         }
     }
     while (_meeting.LocalDue() && *_meeting.LocalDue() <= now)

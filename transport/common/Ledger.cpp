@@ -45,7 +45,7 @@ bool Ledger::Comes(const GuidPrefix &peer, const HostAddress &host, std::size_t 
     Account &account = _accounts[peer];
     account.Host = host;
     account.IsListed = _listed.contains(host);
-    account.Credit = static_cast<std::int64_t>(bytes);
+    account.Add(static_cast<std::int64_t>(bytes));
     return true;
 }
 
@@ -135,8 +135,7 @@ void Ledger::Came(const GuidPrefix &peer, std::size_t bytes)
     const auto found = _accounts.find(peer);
     if (found != _accounts.end())
     {
-        const std::int64_t credit = found->second.Credit + static_cast<std::int64_t>(bytes + IpAndUdp);
-        found->second.Credit = std::min(credit, LargestCredit);
+        found->second.Add(static_cast<std::int64_t>(bytes + IpAndUdp));
     }
 }
 
@@ -165,7 +164,7 @@ bool Ledger::IsStranger(const GuidPrefix &peer) const
     return found == _accounts.end() || found->second.IsStranger();
 }
 
-Ledger::Going Ledger::MayGo(const Place &to, std::size_t bytes, TimePoint now)
+Ledger::Going Ledger::MayGo(const Place &to, std::size_t bytes, Cargo cargo, TimePoint now)
 {
     const auto cost = static_cast<std::int64_t>(bytes + IpAndUdp);
     const std::lock_guard lock(_mutex);
@@ -178,18 +177,18 @@ Ledger::Going Ledger::MayGo(const Place &to, std::size_t bytes, TimePoint now)
         {
             return Going::Freely;
         }
-        payer = payer == nullptr && stranger->Credit >= cost ? stranger : payer;
+        payer = payer == nullptr && stranger->Has(cost, cargo) ? stranger : payer;
     }
     if (payer != nullptr)
     {
-        payer->Credit -= cost;
+        payer->Take(cost, cargo);
         return Going::AsToStranger;
     }
     if (stranger == nullptr && _listed.contains(to.Host))
     {
         return Going::Freely;
     }
-    if (TakeAllowance(cost, now))
+    if (TakeAllowance(cost, cargo, now))
     {
         return Going::AsToStranger;
     }
@@ -197,7 +196,7 @@ Ledger::Going Ledger::MayGo(const Place &to, std::size_t bytes, TimePoint now)
     return Going::Refused;
 }
 
-bool Ledger::TakeAllowance(std::int64_t bytes, TimePoint now)
+bool Ledger::TakeAllowance(std::int64_t bytes, Cargo cargo, TimePoint now)
 {
     const auto since = std::chrono::duration_cast<std::chrono::milliseconds>(now - _filledAt).count();
     const std::int64_t filled = AllowanceRate * std::min<std::int64_t>(since, 1'000'000) / 1000;
@@ -206,7 +205,7 @@ bool Ledger::TakeAllowance(std::int64_t bytes, TimePoint now)
         _allowance = std::min(_allowance + filled, Allowance);
         _filledAt = now;
     }
-    if (_allowance < bytes)
+    if (_allowance < bytes + (cargo == Cargo::Samples ? Allowance / 2 : 0))
     {
         return false;
     }

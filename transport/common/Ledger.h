@@ -2,6 +2,7 @@
 // together make this node keep and send.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <compare>
@@ -36,7 +37,8 @@ struct Place
 //
 // - Strangers are few, and have few endpoints, for each host and in all.
 // - A stranger is sent as many bytes as came from it. All strangers share a small allowance besides. Those of
-//   hosts that are listed as peers are sent all.
+//   hosts that are listed as peers are sent all. Samples may have half of both: a stranger that needs nothing
+//   but our discovery to become known would never get it beside samples that come each moment.
 // - Each participant has a limit of endpoints, and all participants together have one.
 //
 // Nothing here follows a number that somebody sent. An account exists as long as the DDS implementation knows
@@ -99,11 +101,16 @@ public:
         AsToStranger,
         Freely
     };
+    enum class Cargo
+    {
+        Discovery,
+        Samples  // and all else that endpoints of users send
+    };
     // Whether a datagram of so many bytes may go to that place, which is then charged. At a place that nobody
     // has announced there is a stranger, unless the host is listed: Cyclone DDS announces its participant at
     // each address at which it has ever heard another one. Headers of IP and UDP are counted besides, here
     // and in Came.
-    Going MayGo(const Place &to, std::size_t bytes, TimePoint now);
+    Going MayGo(const Place &to, std::size_t bytes, Cargo cargo, TimePoint now);
 
     // A host whose participants were refused something in each of the last seconds.
     struct Refused
@@ -130,6 +137,21 @@ private:
         bool HasSpoken = false;
         bool Listens = false;  // and is one of the first that do
         std::int64_t Credit = 0;
+        std::int64_t ForSamples = 0;  // of these
+        void Add(std::int64_t bytes)
+        {
+            Credit = std::min(Credit + bytes, LargestCredit);
+            ForSamples = std::min(ForSamples + bytes / 2, LargestCredit / 2);
+        }
+        bool Has(std::int64_t bytes, Cargo cargo) const
+        {
+            return Credit >= bytes && (cargo == Cargo::Discovery || ForSamples >= bytes);
+        }
+        void Take(std::int64_t bytes, Cargo cargo)
+        {
+            Credit -= bytes;
+            ForSamples -= cargo == Cargo::Samples ? bytes : 0;
+        }
         std::set<EntityId> Endpoints;
         std::vector<Place> Named;   // by the participant
         std::vector<Place> Places;  // all of them
@@ -153,7 +175,7 @@ private:
     void PutPlaces(const GuidPrefix &peer, Account &account, std::span<const Place> places);
     void RemovePlaces(const GuidPrefix &peer, const Account &account);
     void Refuse(const HostAddress &host, TimePoint now);
-    bool TakeAllowance(std::int64_t bytes, TimePoint now);
+    bool TakeAllowance(std::int64_t bytes, Cargo cargo, TimePoint now);
 
     const std::set<HostAddress> _listed;
     mutable std::mutex _mutex;

@@ -110,9 +110,11 @@ public:
     void Sending(std::span<const std::uint8_t> datagram);
     // True if a datagram may go to that address, which is not a group's (Ledger::MayGo). To a stranger it
     // does not go while the kernel awaits the hardware address, but for one a second.
-    bool MayGo(const Place &to, std::size_t bytes, HardwareAddresses &addresses, TimePoint now)
+    bool MayGo(const Place &to, std::size_t bytes, Ledger::Cargo cargo, HardwareAddresses &addresses,
+               TimePoint now)
     {
-        const auto going = _mode == Mode::Full ? _ledger->MayGo(to, bytes, now) : Ledger::Going::Freely;
+        const auto going =
+            _mode == Mode::Full ? _ledger->MayGo(to, bytes, cargo, now) : Ledger::Going::Freely;
         return going == Ledger::Going::Freely ||
                (going == Ledger::Going::AsToStranger && addresses.MayAsk(to.Host, now));
     }

@@ -49,12 +49,12 @@ protected:
         return Accounts.HasEndpoint(NameOf(number), EndpointOf(endpoint), {}, Now);
     }
     // How many datagrams go to the place of a participant, of so many.
-    std::size_t Go(std::size_t number, std::size_t tried)
+    std::size_t Go(std::size_t number, std::size_t tried, Ledger::Cargo cargo = Ledger::Cargo::Discovery)
     {
         std::size_t gone = 0;
         for (std::size_t i = 0; i < tried; ++i)
         {
-            gone += Accounts.MayGo(PlaceOf(number), Size, Now) != Ledger::Going::Refused ? 1 : 0;
+            gone += Accounts.MayGo(PlaceOf(number), Size, cargo, Now) != Ledger::Going::Refused ? 1 : 0;
         }
         return gone;
     }
@@ -162,7 +162,7 @@ TEST_F(LedgerTest, StrangersOfAListedHostGetAllAndAreFew)
     EXPECT_EQ(come, Ledger::MostStrangersOfHost);
     for (int i = 0; i < 10'000; ++i)
     {
-        ASSERT_EQ(accounts.MayGo(PlaceOf(1), Size, Now), Ledger::Going::Freely);
+        ASSERT_EQ(accounts.MayGo(PlaceOf(1), Size, Ledger::Cargo::Discovery, Now), Ledger::Going::Freely);
     }
 }
 
@@ -225,10 +225,29 @@ TEST_F(LedgerTest, APlaceThatNobodyHasAnnouncedIsAStrangersUnlessItsHostIsListed
     std::size_t gone = 0;
     for (int i = 0; i < 10'000; ++i)
     {
-        ASSERT_EQ(accounts.MayGo(PlaceOf(7), Size, Now), Ledger::Going::Freely);
-        gone += accounts.MayGo(PlaceOf(5), Size, Now) != Ledger::Going::Refused ? 1 : 0;
+        ASSERT_EQ(accounts.MayGo(PlaceOf(7), Size, Ledger::Cargo::Discovery, Now), Ledger::Going::Freely);
+        gone +=
+            accounts.MayGo(PlaceOf(5), Size, Ledger::Cargo::Discovery, Now) != Ledger::Going::Refused ? 1 : 0;
     }
     EXPECT_EQ(static_cast<std::int64_t>(gone), Ledger::Allowance / OnAir);
+}
+
+// A program that only writes cannot speak before it knows us, for which it needs our discovery.
+TEST_F(LedgerTest, SamplesLeaveAStrangerHalfOfAllForDiscovery)
+{
+    ASSERT_TRUE(Comes(1));
+    Accounts.Came(NameOf(1), 20 * Size);
+    const std::size_t ofAllowance = static_cast<std::size_t>(Ledger::Allowance / 2 / OnAir);
+    const std::size_t ofCredit = 20 * Size / 2 / static_cast<std::size_t>(OnAir);
+    EXPECT_EQ(Go(1, 10'000, Ledger::Cargo::Samples), ofCredit + ofAllowance);
+    EXPECT_GE(Go(1, 10'000), ofCredit + ofAllowance);
+    for (int second = 0; second < 60; ++second)
+    {
+        Now += 1s;
+        Accounts.Came(NameOf(1), Size);
+        EXPECT_EQ(Go(1, 100, Ledger::Cargo::Samples), second % 2 == 0 ? 1u : 0u) << second;
+        EXPECT_GE(Go(1, 100), static_cast<std::size_t>(Ledger::AllowanceRate / OnAir));
+    }
 }
 
 TEST_F(LedgerTest, AHostThatIsRefusedSomethingInManySecondsIsNamed)

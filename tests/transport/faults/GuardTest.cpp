@@ -285,7 +285,7 @@ TEST(FastDdsAnnouncementFaults, Cve2021_38425_AnothersAddressIsSentNoMoreThanCam
     std::size_t sent = 0;
     for (std::size_t i = 0; i < Times; ++i)
     {
-        sent += guard.MayGo(victim, Size, addresses, now) ? Size + IpAndUdp : 0;
+        sent += guard.MayGo(victim, Size, Ledger::Cargo::Discovery, addresses, now) ? Size + IpAndUdp : 0;
     }
     EXPECT_LE(sent, datagram.size() + IpAndUdp + std::size_t{Ledger::Allowance});
 }

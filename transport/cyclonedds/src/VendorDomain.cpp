@@ -251,7 +251,7 @@ bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t s
                           const SendingSamples sending;
                           RabitCyclonePlace place{.address = {}, .port = to.port};
                           std::copy_n(to.address, sizeof place.address, place.address);
-                          if (!MayGo(&domain, &place, bytes.size()))
+                          if (!MayGo(&domain, &place, bytes.size(), true))
                           {
                               return;
                           }
@@ -280,13 +280,15 @@ RabitCycloneWays VendorDomain::WaysTo(void *self, const unsigned char *address)
     return {.host = !isAwaited || domain._addresses.HasToAsk(host, now), .group = isAwaited};
 }
 
-bool VendorDomain::MayGo(void *self, const RabitCyclonePlace *place, std::size_t size)
+bool VendorDomain::MayGo(void *self, const RabitCyclonePlace *place, std::size_t size, bool samples)
 {
     auto &domain = *static_cast<VendorDomain *>(self);
     Rtps::Place to{.Host = {}, .Port = static_cast<std::uint16_t>(place->port)};
     std::copy_n(place->address, to.Host.size(), to.Host.begin());
     return IsGroup(to.Host) ||
-           domain._guard.MayGo(to, size, domain._addresses, std::chrono::steady_clock::now());
+           domain._guard.MayGo(to, size,
+                               samples ? Rtps::Ledger::Cargo::Samples : Rtps::Ledger::Cargo::Discovery,
+                               domain._addresses, std::chrono::steady_clock::now());
 }
 
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)

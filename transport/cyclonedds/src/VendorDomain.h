@@ -76,7 +76,7 @@ private:
     static bool Hold(void *self, const unsigned char *datagram, std::size_t size,
                      const RabitCycloneRoute *route);
     static RabitCycloneWays WaysTo(void *self, const unsigned char *address);
-    static bool MayGo(void *self, const RabitCyclonePlace *place, std::size_t size);
+    static bool MayGo(void *self, const RabitCyclonePlace *place, std::size_t size, bool samples);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const unsigned char *from, bool direct);

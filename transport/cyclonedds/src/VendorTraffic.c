@@ -92,12 +92,12 @@ static size_t SizeOf(size_t parts, const ddsrt_iovec_t *part)
     return size;
 }
 
-static bool MayGo(const struct Watch *watch, const ddsi_locator_t *destination, size_t size)
+static bool MayGo(const struct Watch *watch, const ddsi_locator_t *destination, size_t size, bool samples)
 {
     struct RabitCyclonePlace place = {.port = destination->port};
     memcpy(place.address, destination->address + AddressAt, sizeof place.address);
     return destination->kind != NN_LOCATOR_KIND_UDPv4 ||
-           watch->calls.mayGo(watch->calls.argument, &place, size);
+           watch->calls.mayGo(watch->calls.argument, &place, size, samples);
 }
 
 static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connection,
@@ -108,13 +108,15 @@ static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connec
     const size_t size = SizeOf(parts, part);
     if (size > sizeof datagram)
     {
-        return MayGo(watch, destination, size) ? watch->write(connection, destination, parts, part, flags)
-                                               : 0;
+        return MayGo(watch, destination, size, false)
+                   ? watch->write(connection, destination, parts, part, flags)
+                   : 0;
     }
     const ddsrt_iovec_t whole = {datagram, Gather(datagram, sizeof datagram, parts, part)};
     struct RabitCycloneRoute route = {.connection = connection, .port = destination->port};
     memcpy(route.address, destination->address + AddressAt, sizeof route.address);
-    if (!watch->calls.may(watch->calls.argument, datagram, size, &route) || !MayGo(watch, destination, size))
+    if (!watch->calls.may(watch->calls.argument, datagram, size, &route) ||
+        !MayGo(watch, destination, size, false))
     {
         return 0;
     }
@@ -192,7 +194,7 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
     const size_t filled = Gather(head, sizeof head, parts, part);
     const bool isDiscovery = watch.calls.isDiscovery(head, filled);
     const size_t whole = SizeOf(parts, part);
-    if (!isDiscovery && !MayGo(&watch, destination, whole))
+    if (!isDiscovery && !MayGo(&watch, destination, whole, true))
     {
         return (ssize_t)whole;
     }

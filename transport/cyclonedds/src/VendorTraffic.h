@@ -54,7 +54,7 @@ extern "C"
         struct RabitCycloneWays (*waysTo)(void *argument, const unsigned char *address);
         /* True if a datagram of that size may go to the address. If not, the vendor is told that it was
            sent. */
-        bool (*mayGo)(void *argument, const struct RabitCyclonePlace *place, size_t size);
+        bool (*mayGo)(void *argument, const struct RabitCyclonePlace *place, size_t size, bool samples);
         /* The datagram was given to a socket. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
         /* A datagram was received, into a buffer of that capacity, where it may be changed in place. Returns

@@ -94,10 +94,11 @@ std::size_t SocketOutput::DatagramsTo(const rtps::SenderResource *socket, const 
                                                   { return Leaves(number, destination); }));
 }
 
-bool SocketOutput::MayGo(const rtps::Locator_t &destination, std::size_t bytes, TimePoint now)
+bool SocketOutput::MayGo(const rtps::Locator_t &destination, std::size_t bytes, bool samples, TimePoint now)
 {
     const Place place{.Host = HostOf(destination), .Port = static_cast<std::uint16_t>(destination.port)};
-    return IsGroup(destination) || _guard.MayGo(place, bytes, _addresses, now);
+    const auto cargo = samples ? Rtps::Ledger::Cargo::Samples : Rtps::Ledger::Cargo::Discovery;
+    return IsGroup(destination) || _guard.MayGo(place, bytes, cargo, _addresses, now);
 }
 
 bool SocketOutput::Send(rtps::SenderResource *socket, const Destinations &destinations,
@@ -108,7 +109,7 @@ bool SocketOutput::Send(rtps::SenderResource *socket, const Destinations &destin
     _allowed.clear();
     for (const rtps::Locator_t &destination : destinations)
     {
-        if (Leaves(number, destination) && MayGo(destination, datagram.size(), now))
+        if (Leaves(number, destination) && MayGo(destination, datagram.size(), samples, now))
         {
             _allowed.push_back(destination);
         }

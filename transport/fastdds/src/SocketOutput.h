@@ -68,7 +68,7 @@ public:
 private:
     bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const;
     std::uint32_t NumberOf(const rtps::Locator_t &destination);
-    bool MayGo(const rtps::Locator_t &destination, std::size_t bytes, TimePoint now);
+    bool MayGo(const rtps::Locator_t &destination, std::size_t bytes, bool samples, TimePoint now);
 
     const GuardedUdpDescriptor::Settings &_settings;
     Rtps::RtpsGuard &_guard;
