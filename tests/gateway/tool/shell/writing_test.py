@@ -334,6 +334,7 @@ def a_recovery_that_does_not_fit_on_the_disk_leaves_no_file(rabit):
 
 TESTS = [what_is_no_recording_is_told_by_info_and_knew, a_message_that_nobody_publishes_is_told_while_recording,
          what_a_recording_does_not_hold_is_told_with_what_it_holds, a_name_of_a_rate_that_no_node_has_is_wrong_usage,
+         a_message_for_a_foreign_topic_counts,
          a_variable_of_the_environment_that_is_wrong_is_named, a_rate_must_be_above_0,
          configurations_of_a_fleet_are_checked_against_each_other,
          what_a_fleet_puts_on_the_air_is_checked_against_its_budgets, shells_complete_commands_and_options,
