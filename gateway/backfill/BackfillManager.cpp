@@ -140,7 +140,7 @@ public:
             {
                 if (!_outbox.Send(asking.Node, asking.What))
                 {
-                    _requester->Refused(asking.Node, asking.What, now);
+                    _requester->Failed(asking.Node, asking.What, now);
                 }
             }
         }

@@ -189,12 +189,6 @@ void Requester::Failed(const std::string &name, const Question &question, Durati
     }
 }
 
-void Requester::Refused(const std::string &name, const Question &question, Duration now)
-{
-    Failed(name, question, now);
-    _nodes[name].Messages[question.name].IsLiveOnly = true;
-}
-
 std::optional<std::pair<Series, Range>> Requester::Answered(const std::string &name, Answer answer,
                                                             const Record &record, Duration now)
 {

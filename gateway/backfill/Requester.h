@@ -72,11 +72,9 @@ public:
         std::string Node;
         Question What;
     };
-    // The questions to send now. Failed must be called of each that cannot be delivered, Refused of each that
-    // is refused at the call.
+    // The questions to send now. Failed must be called of each that cannot be delivered.
     std::vector<Asking> Due(Duration now);
     void Failed(const std::string &node, const Question &question, Duration now);
-    void Refused(const std::string &node, const Question &question, Duration now);
 
     enum class Taken
     {
@@ -97,8 +95,7 @@ public:
     std::uint64_t Malformed() const { return _malformed; }
     // Nodes that do not answer for that message, and why, by node and message.
     std::map<std::pair<std::string, std::string>, std::string> Refusals() const;
-    // Node and message of posts that come live or never: the node does not record them, or answers no
-    // questions.
+    // Node and message of posts that come live or never, since the node does not record them.
     std::set<std::pair<std::string, std::string>> LiveOnly() const;
 
 private:

@@ -90,6 +90,7 @@ void SeriesStreams::SetPaused(bool isPaused)
     {
         const std::lock_guard lock(_mutex);
         _isPaused = isPaused;
+        _hasBegun = _hasBegun || !isPaused;
         if (!isPaused)
         {
             newest.swap(_newest);
@@ -119,7 +120,7 @@ void SeriesStreams::TakeLive(const GatewayTap::MirroredSample &sample)
         const std::lock_guard lock(_mutex);
         if (_isPaused && !_liveOnly.contains({series.Node, series.Message}))
         {
-            if (_newest.contains(series) || _newest.size() < MostNewest)
+            if (!_hasBegun && (_newest.contains(series) || _newest.size() < MostNewest))
             {
                 _newest[series] = Newest{sample.SourceTime, sample.PostedAt, std::move(bytes)};
             }

@@ -26,7 +26,7 @@ namespace Rabit::Backfill
 class SeriesStreams
 {
 public:
-    // Series whose newest message is kept during a pause.
+    // Series whose newest message is kept before the first end of the pause.
     static constexpr std::size_t MostNewest = 256;
 
     SeriesStreams(const GatewayConfig &config, std::shared_ptr<RecordingTarget> target,
@@ -42,9 +42,10 @@ public:
     // A range that is whole from now on.
     void TakeWhole(const Series &series, Range range);
 
-    // While paused no live message is recorded, as it comes later, but for those of SetLiveOnly. At the end
-    // of the pause the newest one of each series is, since its origin may not record. Paused from the
-    // beginning on, until it is known what the recordings have.
+    // While paused no live message is recorded, as it comes later, but for those of SetLiveOnly. Paused from
+    // the beginning on, until it is known what the recordings have. Then the newest live message of each
+    // series is recorded, since its origin may not record. Not so after later pauses: the recordings may be
+    // read again before that message is in them, and then it would be recorded twice.
     void SetPaused(bool isPaused);
     // Node and message of posts that do not come later: during a pause they are recorded as they come.
     void SetLiveOnly(std::set<std::pair<std::string, std::string>> series);
@@ -56,7 +57,7 @@ public:
     bool IsBackfilled(std::string_view message) const { return _messages.contains(message); }
 
 private:
-    // The last live message of a series in this pause.
+    // The last live message of a series before the first end of the pause.
     struct Newest
     {
         std::int64_t SourceTime = 0;
@@ -78,6 +79,7 @@ private:
     std::mutex _mutex;  // guards the members below
     bool _isPaused = true;
     std::map<std::pair<Series, bool>, std::uint32_t> _streams;
+    bool _hasBegun = false;
     std::set<std::pair<std::string, std::string>> _liveOnly;
     std::map<Series, Newest> _newest;
 };
