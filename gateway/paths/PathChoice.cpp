@@ -25,6 +25,10 @@ void PathChoice::Heard(const std::string &node, std::size_t path, NodeState stat
     of.Ways.resize(_paths);
     Way &way = of.Ways.at(path);
     way.State = state;
+    if (std::none_of(of.Ways.begin(), of.Ways.end(), [](const Way &each) { return each.IsUp(); }))
+    {
+        of.Incarnation = 0;  // the next life may have a lower one
+    }
     if (std::exchange(way.HearsHereFirst, hearsHereFirst) && !hearsHereFirst)
     {
         // The node hears this one by an earlier path again, which has to prove itself.

@@ -68,10 +68,11 @@ public:
     // The beats of a node by one path.
     struct Beats
     {
-        std::uint64_t Incarnation = 0;  // a higher one is a later life
-        BeatCount Count;                // all of this incarnation
-        Duration Overdue{0};            // the next one is, or the newest one was when it came
-        Duration Period{1};             // from one to the next
+        // A higher one is a later life while the node is UP on any path.
+        std::uint64_t Incarnation = 0;
+        BeatCount Count;      // all of this incarnation
+        Duration Overdue{0};  // the next one is, or the newest one was when it came
+        Duration Period{1};   // from one to the next
     };
     // To be called some times in a period, for each path by which the node is heard.
     void Look(const std::string &node, std::size_t path, const Beats &beats);

@@ -245,6 +245,25 @@ TEST_F(PathChoiceTest, BeatsOfAnEarlierLifeOweAll)
     EXPECT_EQ(Chosen(), Modem);
 }
 
+// Its clock was set back, and it keeps no state.
+TEST_F(PathChoiceTest, ANodeThatComesBackWithALowerIncarnationIsJudgedByItsBeats)
+{
+    incarnation = 9;
+    Beat(Mesh);
+    Beat(Modem);
+    Hear(Mesh, NodeState::LOST);
+    Hear(Modem, NodeState::LOST);
+    incarnation = 2;
+    counts = {};
+    for (const std::size_t path : {Mesh, Modem})
+    {
+        Hear(path, NodeState::UP);
+        Beat(path);
+    }
+    Silent(Mesh, 5 * Period);
+    EXPECT_EQ(Chosen(), Modem);
+}
+
 class PathChoiceOfABigAndASmallPath : public PathChoiceTest
 {
 protected:
