@@ -68,7 +68,7 @@ std::vector<PeerPlace> VendorCore::PeerPlaces() const
     return places;
 }
 
-std::vector<SettingsProblem> VendorCore::Refusals() const
+std::vector<SettingsProblem> VendorCore::Problems() const
 {
     std::vector<SettingsProblem> problems;
     for (const Rtps::Ledger::Refused &refused : _accounts->LastingRefusals(std::chrono::steady_clock::now()))
@@ -79,6 +79,10 @@ std::vector<SettingsProblem> VendorCore::Refusals() const
              .Text = "programs there announce or request more than this node gives to strangers: "
                      "refused " +
                      std::to_string(refused.Times) + " times"});
+    }
+    if (auto problem = MeetingProblem())
+    {
+        problems.push_back(std::move(*problem));
     }
     return problems;
 }

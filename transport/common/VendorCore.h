@@ -45,8 +45,8 @@ public:
         const std::lock_guard lock(_mutex);
         _peers.VisitOf(node, visit);
     }
-    // The hosts whose programs are refused something for some time, as problems of the network.
-    std::vector<SettingsProblem> Refusals() const;
+    // As BackendSession.
+    std::vector<SettingsProblem> Problems() const;
     // The addresses of the Rabit nodes that it knows.
     std::vector<PeerPlace> PeerPlaces() const;
     const std::shared_ptr<SessionLog> &Log() const { return _context.Log; }
@@ -77,6 +77,8 @@ private:
     // Number of departed participants that are remembered: the instances of their writers end later.
     static constexpr std::size_t MostGone = 64;
 
+    // The reason why other nodes are not told of all endpoints, if there is one (rtps/MeetingThread.h).
+    virtual std::optional<SettingsProblem> MeetingProblem() const = 0;
     // Makes a call of the peer handler, here or on another thread, in the order of the events.
     virtual void Run(std::function<void()> call) { call(); }
     void Tell(PeerEvent::Kind what, const Identity &who);

@@ -172,16 +172,6 @@ SessionCore::~SessionCore()
     Close();
 }
 
-std::vector<SettingsProblem> SessionCore::Problems() const
-{
-    auto problems = Refusals();
-    if (auto problem = _domain.Problem())
-    {
-        problems.push_back(std::move(*problem));
-    }
-    return problems;
-}
-
 void SessionCore::OnParticipants(dds_entity_t reader, void *self)
 {
     auto &core = *static_cast<SessionCore *>(self);

@@ -3,9 +3,8 @@
 #include <rabit/transport/Transport.h>
 
 #include <functional>
-#include <memory>
+#include <optional>
 #include <utility>
-#include <vector>
 
 #include "AnnouncementThread.h"
 #include "Entity.h"
@@ -29,8 +28,6 @@ public:
     SessionCore(const SessionCore &) = delete;
     SessionCore &operator=(const SessionCore &) = delete;
 
-    // As BackendSession.
-    std::vector<SettingsProblem> Problems() const;
     dds_entity_t Participant() const { return _participant.Get(); }
 
 private:
@@ -39,6 +36,7 @@ private:
     static void OnEndpoints(dds_entity_t reader, void *self);
     void PeerAppeared(const Rtps::GuidPrefix &prefix, const dds_qos_t *qos);
     void PeerGone(const Rtps::GuidPrefix &prefix);
+    std::optional<SettingsProblem> MeetingProblem() const override { return _domain.Problem(); }
     void Run(std::function<void()> call) override { _worker.Post(std::move(call)); }
 
     Rtps::GuidPrefix _own{};  // set before anything is discovered

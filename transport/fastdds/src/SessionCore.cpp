@@ -131,16 +131,6 @@ SessionCore::~SessionCore()
     rtps::RTPSDomain::removeRTPSParticipant(_participant);
 }
 
-std::vector<SettingsProblem> SessionCore::Problems() const
-{
-    auto problems = Refusals();
-    if (auto problem = _meeting->Problem())
-    {
-        problems.push_back(std::move(*problem));
-    }
-    return problems;
-}
-
 void SessionCore::Close()
 {
     VendorCore::Close();

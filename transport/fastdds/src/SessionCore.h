@@ -6,9 +6,9 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
 #include "AnnouncementTimer.h"
 #include "GuardedUdp.h"
@@ -33,8 +33,6 @@ public:
     SessionCore(const SessionCore &) = delete;
     SessionCore &operator=(const SessionCore &) = delete;
 
-    // As BackendSession.
-    std::vector<SettingsProblem> Problems() const;
     // VendorCore::Close
     void Close();
 
@@ -44,6 +42,7 @@ public:
     bool HasMulticast() const { return _multicast; }
 
 private:
+    std::optional<SettingsProblem> MeetingProblem() const override { return _meeting->Problem(); }
     void OnParticipant(const ParticipantNews &news) override;
     void OnEndpoint(const EndpointNews &news) override;
     void onParticipantAuthentication(rtps::RTPSParticipant *participant,
