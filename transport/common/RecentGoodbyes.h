@@ -1,6 +1,7 @@
 // Remembers the participants that said goodbye.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <mutex>
@@ -45,6 +46,10 @@ public:
     // after it; then the goodbye is forgotten.
     bool Heard(const GuidPrefix &peer, TimePoint now)
     {
+        if (_isEmpty)
+        {
+            return true;
+        }
         const std::lock_guard lock(_mutex);
         const Goodbye *const found = _goodbyes.Find(peer);
         if (found == nullptr)
@@ -58,6 +63,7 @@ public:
         if (found->HeardAgain && now - *found->HeardAgain >= GoesOn)
         {
             _goodbyes.Erase(peer);
+            _isEmpty = _goodbyes.Size() == 0;
             return true;
         }
         if (!found->HeardAgain)
@@ -80,6 +86,7 @@ private:
         if (!IsNoted(peer, goodbye.At))
         {
             _goodbyes.Put(peer, goodbye);
+            _isEmpty = false;
         }
     }
     bool IsNoted(const GuidPrefix &peer, TimePoint now) const
@@ -90,6 +97,7 @@ private:
 
     mutable std::mutex _mutex;
     RecentMap<GuidPrefix, Goodbye> _goodbyes{Most};  // guarded by _mutex
+    std::atomic<bool> _isEmpty{true};                // _goodbyes; most datagrams come while it is
 };
 
 }  // namespace Rabit::Rtps
