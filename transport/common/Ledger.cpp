@@ -22,31 +22,26 @@ Ledger::Sum Ledger::StrangersBeside(const HostAddress &host) const
     return sum;
 }
 
-bool Ledger::Has(const GuidPrefix &peer) const
-{
-    const std::lock_guard lock(_mutex);
-    return _accounts.contains(peer);
-}
-
-bool Ledger::Comes(const GuidPrefix &peer, const HostAddress &host, std::size_t bytes, TimePoint now)
+Ledger::Coming Ledger::Comes(const GuidPrefix &peer, const HostAddress &host, std::size_t bytes,
+                             TimePoint now)
 {
     const std::lock_guard lock(_mutex);
     if (_accounts.contains(peer))
     {
-        return true;
+        return Coming::Known;
     }
     const Sum strangers = StrangersBeside(host);
     if (_accounts.size() >= Most || strangers.Participants >= MostStrangers ||
         strangers.OfHost >= MostStrangersOfHost)
     {
         Refuse(host, now);
-        return false;
+        return Coming::Refused;
     }
     Account &account = _accounts[peer];
     account.Host = host;
     account.IsListed = _listed.contains(host);
     account.Add(static_cast<std::int64_t>(bytes));
-    return true;
+    return Coming::New;
 }
 
 void Ledger::SetPlaces(const GuidPrefix &peer, std::span<const Place> places)

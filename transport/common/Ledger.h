@@ -71,10 +71,14 @@ public:
     // The hosts that the settings list as peers.
     explicit Ledger(std::set<HostAddress> listed = {}) : _listed(std::move(listed)) {}
 
-    bool Has(const GuidPrefix &peer) const;
-    // A participant announced itself, in a datagram of so many bytes from `host`. Opens its account. Returns
-    // false if it is new, and there are too many.
-    bool Comes(const GuidPrefix &peer, const HostAddress &host, std::size_t bytes, TimePoint now);
+    enum class Coming
+    {
+        Refused,  // it is new, and there are too many
+        New,
+        Known
+    };
+    // A participant announced itself, in a datagram of so many bytes from `host`. Opens its account.
+    Coming Comes(const GuidPrefix &peer, const HostAddress &host, std::size_t bytes, TimePoint now);
     // The places that the participant names. If they have changed, the former ones are forgotten, and those
     // of its endpoints.
     void SetPlaces(const GuidPrefix &peer, std::span<const Place> places);

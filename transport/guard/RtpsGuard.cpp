@@ -415,9 +415,12 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
     {
         return Verdict::Ignore;
     }
-    const bool isNew = IsCounted(passage) && !_ledger->Has(passage.Sender);
-    if (isNew && !_ledger->Comes(passage.Sender, passage.From,
-                                 passage.Whence == Origin::Card ? passage.Datagram.size() : 0, passage.Now))
+    const auto coming =
+        IsCounted(passage)
+            ? _ledger->Comes(passage.Sender, passage.From,
+                             passage.Whence == Origin::Card ? passage.Datagram.size() : 0, passage.Now)
+            : Ledger::Coming::Known;
+    if (coming == Ledger::Coming::Refused)
     {
         return Verdict::Refuse;
     }
@@ -428,7 +431,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
              passage.Sender,
              {.Digest = announcement.Digest, .Signed = announcement.Signed, .Number = number})))
     {
-        if (isNew)
+        if (coming == Ledger::Coming::New)
         {
             _ledger->Left(passage.Sender);
         }

@@ -39,10 +39,10 @@ protected:
     bool Comes(std::size_t number) { return ComesFrom(number, number); }
     bool ComesFrom(std::size_t number, std::size_t host)
     {
-        const bool comes = Accounts.Comes(NameOf(number), HostOf(host), 0, Now);
+        const auto coming = Accounts.Comes(NameOf(number), HostOf(host), 0, Now);
         const std::vector places{PlaceOf(number)};
         Accounts.SetPlaces(NameOf(number), places);
-        return comes;
+        return coming != Ledger::Coming::Refused;
     }
     bool HasEndpoint(std::size_t number, std::size_t endpoint)
     {
@@ -70,6 +70,15 @@ TEST_F(LedgerTest, OfOneHostAFewStrangersComeAndAnotherHostIsNotConcerned)
         EXPECT_EQ(ComesFrom(number, 7), number < Ledger::MostStrangersOfHost) << number;
     }
     EXPECT_TRUE(ComesFrom(2000, 8));
+}
+
+TEST_F(LedgerTest, AParticipantIsNewUntilItsAccountIsOpen)
+{
+    const auto comes = [&] { return Accounts.Comes(NameOf(1), HostOf(1), 0, Now); };
+    EXPECT_EQ(comes(), Ledger::Coming::New);
+    EXPECT_EQ(comes(), Ledger::Coming::Known);
+    Accounts.Left(NameOf(1));
+    EXPECT_EQ(comes(), Ledger::Coming::New);
 }
 
 TEST_F(LedgerTest, OfAllHostsTogetherSomeStrangersCome)
@@ -155,7 +164,8 @@ TEST_F(LedgerTest, StrangersOfAListedHostGetAllAndAreFew)
     std::size_t come = 0;
     for (std::size_t number = 0; number < 1000; ++number)
     {
-        come += accounts.Comes(NameOf(number), HostOf(7), 0, Now) ? 1 : 0;
+        const auto coming = accounts.Comes(NameOf(number), HostOf(7), 0, Now);
+        come += coming != Ledger::Coming::Refused ? 1 : 0;
         const std::vector places{PlaceOf(number)};
         accounts.SetPlaces(NameOf(number), places);
     }
