@@ -1,21 +1,14 @@
 // Published faults of Cyclone DDS.
 #include "faults/Datagrams.h"
-#include "guard/DeliveryCheck.h"
 
 namespace Faults
 {
 
 using namespace RtpsBytes;
-using Rabit::Rtps::HandshakeWriter;
-using Rabit::Rtps::LivelinessWriter;
-using Rabit::Rtps::ParticipantEntity;
-using Rabit::Rtps::ParticipantWriter;
-using Rabit::Rtps::PublicationsWriter;
 
 namespace
 {
 
-constexpr std::uint8_t HasData = 0x05;
 constexpr EntityId LivelinessReader = 0x000200c7;
 
 Bytes Liveliness(const Bytes &payload)

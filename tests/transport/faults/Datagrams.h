@@ -1,16 +1,27 @@
 // Datagrams of published faults of the vendors, each built from its public description alone.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "common/Rtps.h"
 #include "guard/RtpsBytes.h"
 
 namespace Faults
 {
 
+using Rabit::Rtps::HandshakeWriter;
+using Rabit::Rtps::LivelinessWriter;
+using Rabit::Rtps::ParticipantEntity;
+using Rabit::Rtps::ParticipantWriter;
+using Rabit::Rtps::PublicationsWriter;
+using Rabit::Rtps::SubscriptionsWriter;
 using RtpsBytes::Bytes;
 using RtpsBytes::GuidPrefix;
+
+// Flags of a DATA submessage with a payload.
+constexpr std::uint8_t HasData = 0x05;
 
 struct Fault
 {

@@ -1,20 +1,15 @@
 // Published faults of Fast DDS that any datagram can reach.
 #include "faults/Datagrams.h"
-#include "guard/DeliveryCheck.h"
 
 namespace Faults
 {
 
 using namespace RtpsBytes;
-using Rabit::Rtps::ParticipantEntity;
-using Rabit::Rtps::ParticipantWriter;
-using Rabit::Rtps::PublicationsWriter;
 
 namespace
 {
 
 constexpr std::uint8_t HasInlineQos = 0x03;
-constexpr std::uint8_t HasData = 0x05;
 // Announcements and requests of types, of XTypes 1.3.
 constexpr std::uint16_t TypeInformation = 0x0075;
 constexpr EntityId TypeRequestsWriter = 0x000300c3;

@@ -3,21 +3,15 @@
 #include <string>
 
 #include "faults/Datagrams.h"
-#include "guard/DeliveryCheck.h"
 
 namespace Faults
 {
 
 using namespace RtpsBytes;
-using Rabit::Rtps::ParticipantEntity;
-using Rabit::Rtps::ParticipantWriter;
-using Rabit::Rtps::PublicationsWriter;
-using Rabit::Rtps::SubscriptionsWriter;
 
 namespace
 {
 
-constexpr std::uint8_t HasData = 0x05;
 // Parameters that Fast DDS alone has.
 constexpr std::uint16_t DataSharing = 0x8006;
 constexpr std::uint16_t EndpointSettings = 0x8010;

@@ -2,19 +2,15 @@
 #include <algorithm>
 
 #include "faults/Datagrams.h"
-#include "guard/DeliveryCheck.h"
 
 namespace Faults
 {
 
 using namespace RtpsBytes;
-using Rabit::Rtps::HandshakeWriter;
-using Rabit::Rtps::ParticipantWriter;
 
 namespace
 {
 
-constexpr std::uint8_t HasData = 0x05;
 constexpr std::uint16_t IdentityToken = 0x1001;
 constexpr std::uint16_t PermissionsToken = 0x1002;
 constexpr std::uint16_t SecurityInfo = 0x1005;
