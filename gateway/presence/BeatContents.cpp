@@ -87,6 +87,12 @@ std::size_t BeatContents::SizeOfFleetSum() const
     return _fleetSumBeats > 0 ? BeatFormat::FleetSum : 0;
 }
 
+// Room for the worst strain, if there is one.
+std::size_t BeatContents::SizeOfWorstStrain() const
+{
+    return SizeOfStrains(std::min<std::size_t>(_strains.size(), 1));
+}
+
 // Number of strains that a beat with this room reports.
 std::size_t BeatContents::StrainsWithin(std::size_t room) const
 {
@@ -110,7 +116,7 @@ std::size_t BeatContents::LeastSize(Duration now) const
     const std::size_t part = SizeOfLeastPart(now);
     return part == 0 ? BeatFormat::Empty
                      : BeatFormat::WithNews + SizeOfMarks() + SizeOfProblems(now) + SizeOfFleetSum() +
-                           SizeOfStrains(std::min<std::size_t>(_strains.size(), 1)) + part;
+                           SizeOfWorstStrain() + part;
 }
 
 void BeatContents::SetProblems(const ProblemCount &problems)
@@ -154,9 +160,8 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     room -= fleetSum;
     // Receivers take a beat without strains as their end, so at least the worst one is told. An announcement
     // that never fits would leave this node without commands, so a small part goes before questions.
-    const std::size_t worst = SizeOfStrains(std::min<std::size_t>(_strains.size(), 1));
     const std::size_t leastPart = SizeOfLeastPart(now);
-    const std::size_t part = worst + leastPart <= room ? leastPart : 0;
+    const std::size_t part = SizeOfWorstStrain() + leastPart <= room ? leastPart : 0;
     const std::size_t strains = StrainsWithin(room - part);
     room -= part + SizeOfStrains(strains);
     AddWants(beat, now, room);

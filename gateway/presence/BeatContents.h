@@ -105,6 +105,7 @@ private:
     void AddStates(Gateway::Beat &beat, std::size_t &room);
     std::size_t SizeOfMarks() const;
     std::size_t SizeOfFleetSum() const;
+    std::size_t SizeOfWorstStrain() const;
     std::size_t StrainsWithin(std::size_t room) const;
     std::size_t SizeOfLeastPart(Duration now) const;
     std::size_t SizeOfProblems(Duration now) const;
