@@ -90,10 +90,10 @@ void SeriesStreams::SetPaused(bool isPaused)
     {
         const std::lock_guard lock(_mutex);
         _isPaused = isPaused;
-        _hasBegun = _hasBegun || !isPaused;
+        _hasFirstPauseEnded = _hasFirstPauseEnded || !isPaused;
         if (!isPaused)
         {
-            newest.swap(_newest);
+            newest.swap(_newestOfFirstPause);
         }
     }
     for (auto &[series, live] : newest)
@@ -120,9 +120,10 @@ void SeriesStreams::TakeLive(const GatewayTap::MirroredSample &sample)
         const std::lock_guard lock(_mutex);
         if (_isPaused && !_liveOnly.contains({series.Node, series.Message}))
         {
-            if (!_hasBegun && (_newest.contains(series) || _newest.size() < MostNewest))
+            if (!_hasFirstPauseEnded &&
+                (_newestOfFirstPause.contains(series) || _newestOfFirstPause.size() < MostSeriesOfFirstPause))
             {
-                _newest[series] = Newest{sample.SourceTime, sample.PostedAt, std::move(bytes)};
+                _newestOfFirstPause[series] = Newest{sample.SourceTime, sample.PostedAt, std::move(bytes)};
             }
             return;
         }

@@ -27,7 +27,7 @@ class SeriesStreams
 {
 public:
     // Series whose newest message is kept before the first end of the pause.
-    static constexpr std::size_t MostNewest = 256;
+    static constexpr std::size_t MostSeriesOfFirstPause = 256;
 
     SeriesStreams(const GatewayConfig &config, std::shared_ptr<RecordingTarget> target,
                   std::shared_ptr<Ledger> ledger);
@@ -79,9 +79,9 @@ private:
     std::mutex _mutex;  // guards the members below
     bool _isPaused = true;
     std::map<std::pair<Series, bool>, std::uint32_t> _streams;
-    bool _hasBegun = false;
+    bool _hasFirstPauseEnded = false;
     std::set<std::pair<std::string, std::string>> _liveOnly;
-    std::map<Series, Newest> _newest;
+    std::map<Series, Newest> _newestOfFirstPause;
 };
 
 // The topic in which whole ranges are recorded, as JSON.
