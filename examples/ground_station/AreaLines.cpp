@@ -37,7 +37,7 @@ bool IsFlownByAll(const AreaStatus &area)
 std::string AreaText(const AreaStatus &area)
 {
     std::string text = std::to_string(CountOf(area, AreaProgress::AREA_FLOWN)) + " of " +
-                       std::to_string(area.answers.size()) + " fly area " + std::to_string(area.number);
+                       std::to_string(area.answers.size()) + " fly area " + std::to_string(area.area.number);
     const auto add = [&](const std::string &what, AreaProgress progress)
     {
         const std::string names = NamesOf(area, progress);

@@ -8,14 +8,7 @@ namespace Ground
 void AreaLog::Given(const Uav::SearchArea &area, double nowS)
 {
     AreaStatus status;
-    status.number = area.number;
-    status.latitude_deg = area.latitude_deg;
-    status.longitude_deg = area.longitude_deg;
-    status.north_m = area.north_m;
-    status.east_m = area.east_m;
-    status.altitude_m = area.altitude_m;
-    status.speed_mps = area.speed_mps;
-    status.lane_m = area.lane_m;
+    status.area = area;
     status.given_s = nowS;
     _areas.push_back(std::move(status));
     if (_areas.size() > MaxListed)
@@ -42,13 +35,14 @@ AreaAnswer AreaLog::AnswerOf(const AreaReport &report, const AreaStatus &area) c
     AreaAnswer answer;
     answer.node = report.Node;
     answer.flies = report.InForce;
-    const bool isWanted = area.number == _areas.back().number;
-    if (report.InForce == area.number)
+    const std::uint32_t number = area.area.number;
+    const bool isWanted = number == _areas.back().area.number;
+    if (report.InForce == number)
     {
         answer.progress = AreaProgress::AREA_FLOWN;
         return answer;
     }
-    if (!isWanted || report.InForce > area.number)
+    if (!isWanted || report.InForce > number)
     {
         answer.progress = AreaProgress::AREA_REPLACED;
         return answer;

@@ -13,7 +13,7 @@ class AreaLines : public testing::Test
 protected:
     Ground::AreaList _list;
 
-    void Give(std::uint32_t number) { _list.items.emplace_back().number = number; }
+    void Give(std::uint32_t number) { _list.items.emplace_back().area.number = number; }
     void Answer(const std::string &node, AreaProgress progress)
     {
         Ground::AreaAnswer answer;

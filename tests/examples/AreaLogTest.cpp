@@ -37,8 +37,8 @@ TEST_F(AreaLog, ListsAnAreaWithItsNumbersBeforeAnyAircraftAnswers)
 {
     Give(2, 10);
     ASSERT_EQ(_log.Areas().size(), 1u);
-    EXPECT_EQ(_log.Areas()[0].number, 2u);
-    EXPECT_EQ(_log.Areas()[0].north_m, 400);
+    EXPECT_EQ(_log.Areas()[0].area.number, 2u);
+    EXPECT_EQ(_log.Areas()[0].area.north_m, 400);
     EXPECT_EQ(_log.Areas()[0].given_s, 10);
     _log.Look({{"uav1", false, 1, "", 10}});
     EXPECT_THAT(AnswersFor(0), ElementsAre("uav1 AREA_SENT"));
@@ -101,7 +101,7 @@ TEST_F(AreaLog, IsBounded)
     for (std::uint32_t number = 1; number <= 100; ++number)
         Give(number, number);
     EXPECT_EQ(_log.Areas().size(), Ground::AreaLog::MaxListed);
-    EXPECT_EQ(_log.Areas().back().number, 100u);
+    EXPECT_EQ(_log.Areas().back().area.number, 100u);
 }
 
 }  // namespace

@@ -454,7 +454,7 @@ TEST_F(AreaCommander, ListsAnAreaWithWhatBecomesOfItAtEachAircraft)
     Run(200ms);
     Report(0);
     Want(321);
-    EXPECT_EQ(Listed().items.at(0).number, 1u);
+    EXPECT_EQ(Listed().items.at(0).area.number, 1u);
     EXPECT_EQ(Listed().items.at(0).north_m, 321);
     ASSERT_EQ(Listed().items.at(0).answers.size(), 1u);
     EXPECT_EQ(Listed().items[0].answers[0].progress, Ground::AreaProgress::AREA_SENT);

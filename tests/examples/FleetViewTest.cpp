@@ -94,7 +94,7 @@ TEST_F(FleetView, TellsOnceHowManyFlyTheSearchArea)
     _workspace.AddPublishSubscribeMessage("AreaList", list);
     Start({"uav1"});
     Ground::AreaStatus &area = list->items.emplace_back();
-    area.number = 2;
+    area.area.number = 2;
     Ground::AreaAnswer &answer = area.answers.emplace_back();
     answer.node = "uav1";
     answer.progress = Ground::AreaProgress::AREA_DECLINED;

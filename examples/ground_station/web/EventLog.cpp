@@ -127,9 +127,9 @@ void EventLog::LookAtPosition(const AircraftData &aircraft, Known &known)
 
 void EventLog::LookAtArea(const AreaStatus &area)
 {
-    if (area.number != _area)
+    if (area.area.number != _area)
     {
-        _area = area.number;
+        _area = area.area.number;
         _areaSinceS = _nowS;
         _areaText.clear();
         Add(Weight::Info, "", "Search area " + std::to_string(_area) + " is given to the fleet");

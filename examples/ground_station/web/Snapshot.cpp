@@ -135,7 +135,7 @@ Json ToJson(const Uav::CameraView &view)
     return {{"frame", view.frame}, {"corners", std::move(corners)}};
 }
 
-Json ToJson(const AreaStatus &area)
+Json ToJson(const Uav::SearchArea &area)
 {
     return {{"number", area.number},
             {"latitude_deg", Latitude(area.latitude_deg)},
@@ -156,7 +156,7 @@ Json ToJson(const AreaStatus &area, double nowS)
                            {"progress", WireName(answer.progress)},
                            {"reason", answer.reason},
                            {"flies", answer.flies}});
-    Json object = ToJson(area);
+    Json object = ToJson(area.area);
     object["given_age_s"] = Short(nowS - area.given_s);
     object["flown_by"] = CountOf(area, AreaProgress::AREA_FLOWN);
     object["answers"] = std::move(answers);
@@ -172,7 +172,7 @@ void AddAreas(Json &snapshot, const Aged<AreaList> &list)
             areas.push_back(ToJson(area, list.Content->posted_s + list.AgeS));
     snapshot["areas"] = std::move(areas);
     if (list && !list.Content->items.empty())
-        snapshot["area"] = ToJson(list.Content->items.back());
+        snapshot["area"] = ToJson(list.Content->items.back().area);
 }
 
 Json ToJson(const Uav::Geofence &fence)

@@ -143,7 +143,7 @@ TEST_F(EventLog, TellsThatAnAircraftIsBackWithoutOrders)
 TEST_F(EventLog, TellsThatASearchAreaIsGivenAndThenHowManyFlyIt)
 {
     Ground::AreaStatus &area = _areas.items.emplace_back();
-    area.number = 2;
+    area.area.number = 2;
     area.answers.resize(3);
     for (std::size_t i = 0; i < 3; ++i)
         area.answers[i].node = "uav" + std::to_string(i + 1);
@@ -164,7 +164,7 @@ TEST_F(EventLog, TellsThatASearchAreaIsGivenAndThenHowManyFlyIt)
 TEST_F(EventLog, WaitsNotForEverForTheAnswersToASearchArea)
 {
     Ground::AreaStatus &area = _areas.items.emplace_back();
-    area.number = 2;
+    area.area.number = 2;
     area.answers.emplace_back().node = "uav1";
     _data.Areas = {&_areas, 0};
     New();

@@ -122,10 +122,10 @@ TEST_F(Snapshot, TellsEachSearchAreaWithItsOutcome)
     Ground::AreaList areas;
     areas.posted_s = 20;
     areas.items.resize(2);
-    areas.items[0].number = 1;
+    areas.items[0].area.number = 1;
     Ground::AreaStatus &wanted = areas.items[1];
-    wanted.number = 2;
-    wanted.north_m = 400;
+    wanted.area.number = 2;
+    wanted.area.north_m = 400;
     wanted.given_s = 18;
     wanted.answers.resize(2);
     wanted.answers[0].node = "uav1";

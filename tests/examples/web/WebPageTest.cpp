@@ -232,7 +232,7 @@ TEST_F(WebPage, ShowsTheCommandsAndTheSearchArea)
     list->items.emplace_back().node = "uav1";
     list->items.back().steps.emplace_back();
     list->PostMessage();
-    areas->items.emplace_back().number = 4;
+    areas->items.emplace_back().area.number = 4;
     areas->PostMessage();
     const Json shown = Shown();
     EXPECT_EQ(shown["commands"][0]["node"], "uav1");
