@@ -1,6 +1,7 @@
 #include "ShutdownSignals.h"
 
 #include <rabit/RabitLog.h>
+#include <rabit/RabitReactor.h>
 
 #include <array>
 #include <cerrno>
@@ -68,7 +69,7 @@ extern "C" void OnShutdownSignal(int signal)
     std::int64_t first = 0;
     if (!state.FirstAt.compare_exchange_strong(first, now))
     {
-        if (now - first >= std::chrono::nanoseconds(ShutdownSignals::Repeat).count())
+        if (now - first >= std::chrono::nanoseconds(RabitReactor::SignalRepeat).count())
         {
             RestoreDefault(signal);
             raise(signal);  // takes effect when the handler returns, since the signal is blocked in it

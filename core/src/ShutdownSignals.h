@@ -12,14 +12,11 @@ namespace Rabit
 // listener handles signals, a handler is installed for each of the three signals whose disposition is the
 // default. The last listener restores the default.
 //
-// The first signal wakes all listeners. One that comes later than Repeat after it ends the process at once;
-// earlier ones are taken for the same one. A program may get one signal twice: `timeout` of coreutils sends
-// it to its child and then to the child's process group, and a terminal sends it to a shell's whole group.
+// The first signal wakes all listeners. One that comes RabitReactor::SignalRepeat after it or later ends the
+// process at once.
 class ShutdownSignals
 {
 public:
-    static constexpr std::chrono::milliseconds Repeat{500};
-
     // Without `handle`, no signal wakes this listener. The same holds, and is logged, if 64 others listen
     // already.
     explicit ShutdownSignals(bool handle);

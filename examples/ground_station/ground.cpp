@@ -220,8 +220,8 @@ Ground::Commander::Settings CommanderSettings(const Options &options, const std:
     return settings;
 }
 
-// Ends a run in an orderly way at the first SIGINT, SIGTERM or SIGHUP; one that comes half a second later or
-// more ends the process as usual. The reactor ignores signals that a program handles itself.
+// Ends a run in an orderly way at the first SIGINT, SIGTERM or SIGHUP; one that comes SignalRepeat after it
+// or later ends the process as usual. The reactor ignores signals that a program handles itself.
 class EndOnSignal
 {
 public:
@@ -240,8 +240,7 @@ public:
                 if (error)
                     return;
                 commander.RequestEnd();
-                // Sooner ones are the same signal: `timeout` and terminals send one twice.
-                _repeats.expires_after(std::chrono::milliseconds(500));
+                _repeats.expires_after(Rabit::RabitReactor::SignalRepeat);
                 _repeats.async_wait(
                     [this](const boost::system::error_code &)
                     {

@@ -13,7 +13,7 @@ namespace Rabit
 // Owns managers and runs them, each on its own thread.
 //
 // While Run is active, SIGINT, SIGTERM and SIGHUP shut down all running reactors of the process in an orderly
-// way. One that comes half a second after the first or later ends the process at once, as if there were no
+// way. One that comes SignalRepeat after the first or later ends the process at once, as if there were no
 // handler. Signals that the program handles or ignores itself, as after nohup, are left alone, and
 // SetHandleSignals(false) switches signal handling off.
 //
@@ -22,6 +22,11 @@ namespace Rabit
 class RabitReactor
 {
 public:
+    // Signals that come sooner after the first are the same one. A program may get one signal twice:
+    // `timeout` of coreutils sends it to its child and then to the child's process group, and a terminal
+    // sends it to a shell's whole group.
+    static constexpr std::chrono::milliseconds SignalRepeat{500};
+
     RabitReactor();
     // For managers of another workspace than the default one.
     explicit RabitReactor(RabitWorkspace &workspace);
