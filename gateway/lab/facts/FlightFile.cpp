@@ -6,6 +6,7 @@
 
 #include "recording/mcap/ChunkReader.h"
 #include "recording/mcap/FileSource.h"
+#include "recording/mcap/McapContents.h"
 #include "recording/mcap/RecordCodec.h"
 #include "recording/mcap/RecordScanner.h"
 
@@ -15,12 +16,6 @@ namespace
 {
 
 constexpr const char *FleetType = "Rabit::Gateway::Fleet";
-
-std::string ValueOf(const Mcap::TextMap &map, const std::string &key)
-{
-    const auto found = map.find(key);
-    return found == map.end() ? "" : found->second;
-}
 
 }  // namespace
 
@@ -114,8 +109,8 @@ void FlightFile::Read(std::uint8_t code, Mcap::ByteView content)
             {
                 (*_tell)({{"fact", "about"},
                           {"file", _path},
-                          {"domain", ValueOf(metadata->Values, "domain")},
-                          {"transport", ValueOf(metadata->Values, "transport")}});
+                          {"domain", Mcap::ValueOf(metadata->Values, "domain")},
+                          {"transport", Mcap::ValueOf(metadata->Values, "transport")}});
             }
             break;
         default:
@@ -150,12 +145,8 @@ void FlightFile::AddStream(const Mcap::Channel &channel)
     }
     const auto schema = _schemas.find(channel.SchemaId);
     Stream stream{channel.Topic, schema == _schemas.end() ? "" : schema->second.Name,
-                  ValueOf(channel.Metadata, "rabit.kind"), ValueOf(channel.Metadata, "rabit.node"), ""};
-    if (channel.Topic.starts_with(stream.Node + "/"))
-    {
-        stream.Message = channel.Topic.substr(stream.Node.size() + 1);
-    }
-    if (stream.Kind == "posted" && _fields.contains(stream.Message) && schema != _schemas.end())
+                  Mcap::Describe(channel)};
+    if (stream.IsOwn() && _fields.contains(stream.Is.Message) && schema != _schemas.end())
     {
         stream.Type = DynamicType::Parse(schema->second.Data, stream.Schema).Type;
     }
@@ -170,14 +161,14 @@ void FlightFile::ReadMessage(const Mcap::Message &message)
         return;
     }
     Stream &stream = found->second;
-    if (stream.Schema == FleetType && stream.Kind == "posted")
+    if (stream.Schema == FleetType && stream.IsOwn())
     {
         for (Json &fact : _fleet.Look(message.Data))
         {
             Put(message.LogTime, std::move(fact));
         }
     }
-    else if (stream.Kind == "posted" || stream.Kind == "mirrored")
+    else if (stream.IsOwn() || stream.Is.Kind == Mcap::ChannelKind::Mirrored)
     {
         stream.At.push_back(message.LogTime);
         stream.Posted.push_back(message.PublishTime);
@@ -187,7 +178,7 @@ void FlightFile::ReadMessage(const Mcap::Message &message)
             stream.NewestAt = message.LogTime;
         }
     }
-    else if (stream.Kind == "recorder")
+    else if (stream.Is.Kind == Mcap::ChannelKind::Recorder)
     {
         ReadJson(stream, message);
     }
@@ -195,8 +186,8 @@ void FlightFile::ReadMessage(const Mcap::Message &message)
 
 void FlightFile::ReadJson(const Stream &stream, const Mcap::Message &message)
 {
-    const bool isLog = stream.Message == "Recorder/Log";
-    if (!isLog && stream.Message != "Recorder/Outcomes")
+    const bool isLog = stream.Topic == stream.Is.Node + "/Recorder/Log";
+    if (!isLog && stream.Topic != stream.Is.Node + "/Recorder/Outcomes")
     {
         return;
     }
@@ -227,9 +218,9 @@ void FlightFile::TellOfStreams()
         if (!stream.At.empty())
         {
             Put(stream.At.back(), {{"fact", "values"},
-                                   {"message", stream.Message},
-                                   {"node", stream.Node},
-                                   {"own", stream.Kind == "posted"},
+                                   {"message", stream.Is.Message},
+                                   {"node", stream.Is.Node},
+                                   {"own", stream.IsOwn()},
                                    {"at", stream.At},
                                    {"posted", stream.Posted}});
             stream.At.clear();
@@ -240,7 +231,7 @@ void FlightFile::TellOfStreams()
             if (const auto text = stream.Type->ToJson(stream.Newest))
             {
                 Put(stream.NewestAt, {{"fact", "fields"},
-                                      {"message", stream.Message},
+                                      {"message", stream.Is.Message},
                                       {"value", Json::parse(*text, nullptr, false)}});
             }
             stream.NewestAt = 0;

@@ -15,6 +15,7 @@
 
 #include "FleetFacts.h"
 #include "recording/mcap/McapRecords.h"
+#include "recording/mcap/RecordedChannel.h"
 
 namespace Rabit::Facts
 {
@@ -43,14 +44,14 @@ private:
     {
         std::string Topic;
         std::string Schema;
-        std::string Kind;
-        std::string Node;
-        std::string Message;
+        Mcap::RecordedChannel Is;
         std::shared_ptr<const DynamicType> Type{};  // of values that are told
         std::vector<std::uint64_t> At{};
         std::vector<std::uint64_t> Posted{};
         Mcap::Bytes Newest{};
         std::uint64_t NewestAt = 0;
+
+        bool IsOwn() const { return Is.Kind == Mcap::ChannelKind::Posted; }
     };
 
     void Read(std::uint8_t code, Mcap::ByteView content);

@@ -161,6 +161,27 @@ TEST_F(FlightFileTest, ValuesAreToldOnceAsTheFileGrowsAndAtAnyByte)
     EXPECT_EQ(about, 1U);
 }
 
+TEST_F(FlightFileTest, OfTheRecordersOwnChannelsTheLogIsTold)
+{
+    MemoryFile content;
+    Mcap::McapWriter writer(content, {"rabit test", "rabit", true});
+    const Mcap::TextMap recorder{{"rabit.kind", "recorder"}, {"rabit.node", "uav1"}};
+    const auto put = [&](const std::string &topic, const std::string &json)
+    {
+        const auto channel = *writer.AddChannel(0, topic, "json", recorder);
+        writer.Add({channel, 0, 1000, 1000, Bytes(json.begin(), json.end())});
+    };
+    put("uav1/Recorder/Log", R"({"level":3,"message":"low battery"})");
+    put("uav1/Recorder/Status", R"({"message":"of no log"})");
+    writer.Finish();
+    Grow(content.Content, content.Content.size());
+    std::vector<Json> facts;
+    FlightFile(Path(), _fields).Follow([&](const Json &fact) { facts.push_back(fact); });
+    ASSERT_EQ(facts.size(), 1U);
+    EXPECT_EQ(facts[0]["fact"], "log");
+    EXPECT_EQ(facts[0]["text"], "low battery");
+}
+
 TEST_F(FlightFileTest, AFileThatIsNotThereOrIsNoRecordingTellsNothing)
 {
     FlightFile file(Path(), _fields);
