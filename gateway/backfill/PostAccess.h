@@ -2,7 +2,6 @@
 
 #include <rabit/gateway/GatewayConfig.h>
 
-#include <algorithm>
 #include <string>
 
 #include "names/NamePattern.h"
@@ -18,8 +17,7 @@ inline bool MayRequestPosts(const GatewayConfig &config, const std::string &node
     {
         return MatchesAny(*config.Record->BackfillTo, node);
     }
-    return !config.Security && std::none_of(config.Paths.begin(), config.Paths.end(),
-                                            [](const PathRule &path) { return path.Security.has_value(); });
+    return !SomePathHasKeys(config);
 }
 
 }  // namespace Rabit::Backfill

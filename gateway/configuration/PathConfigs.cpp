@@ -54,6 +54,12 @@ std::vector<GatewayConfig> PathConfigsOf(const GatewayConfig &config)
     return configs;
 }
 
+bool SomePathHasKeys(const GatewayConfig &config)
+{
+    return config.Security || std::any_of(config.Paths.begin(), config.Paths.end(),
+                                          [](const PathRule &path) { return path.Security.has_value(); });
+}
+
 void UseInterfaces(const std::vector<std::string> &interfaces, GatewayConfig &config)
 {
     if (!config.Paths.empty())

@@ -35,10 +35,7 @@ std::size_t LargestLinkFrame(std::size_t maxDatagram, bool secured)
 
 std::size_t LargestLinkFrameOf(const GatewayConfig &config)
 {
-    const std::vector<GatewayConfig> paths = PathConfigsOf(config);
-    const bool secured = std::any_of(paths.begin(), paths.end(),
-                                     [](const GatewayConfig &path) { return path.Security.has_value(); });
-    return LargestLinkFrame(config.MaxDatagram, secured);
+    return LargestLinkFrame(config.MaxDatagram, SomePathHasKeys(config));
 }
 
 }  // namespace Rabit

@@ -260,6 +260,8 @@ struct GatewayConfig
 // The configuration of each path: the gateway's, with the network settings of the path, and with the path
 // alone under Paths. Of a gateway without Paths its own.
 std::vector<GatewayConfig> PathConfigsOf(const GatewayConfig &config);
+// True if some path has keys.
+bool SomePathHasKeys(const GatewayConfig &config);
 
 // Has the gateway use these interfaces alone, in place of those of the configuration. Of several paths one
 // remains, with its keys, budget and peers: the first that names one of the interfaces, else the first.
