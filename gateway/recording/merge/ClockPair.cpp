@@ -27,16 +27,13 @@ constexpr Moment MostUncertain = 3600 * OneSecond;
 
 void ClockPair::Add(Moment first, Moment second, std::optional<Moment> uncertainBy)
 {
-    if (_lastTold && first < *_lastTold + LeastApart)
+    _beganAt = std::min(_beganAt.value_or(first), first);
+    if (!uncertainBy || *uncertainBy > MostUncertain || uncertainBy == _lastHalfRoundTrip ||
+        (_lastUsed && first < *_lastUsed + LeastApart))
     {
         return;
     }
-    _lastTold = first;
-    _beganAt = _beganAt.value_or(first);
-    if (!uncertainBy || *uncertainBy > MostUncertain || uncertainBy == _lastHalfRoundTrip)
-    {
-        return;
-    }
+    _lastUsed = first;
     _lastHalfRoundTrip = uncertainBy;
     // Clocks do not go back: the entries that this one contradicts were guessed while the other clock stood
     // still.

@@ -31,7 +31,7 @@ public:
     static constexpr double LeastDrift = 5e-6;
 
     // Adds the same moment on both clocks. To be called in the order of the first clock: moments that are
-    // not at least half a second after the one before are ignored.
+    // not at least half a second after the last one that is of use are ignored.
     void Add(Moment first, Moment second, std::optional<Moment> uncertainBy);
     // To be called once, after the last Add and before the first query.
     void Finish();
@@ -76,7 +76,7 @@ private:
 
     std::vector<Entry> _entries;
     std::optional<Moment> _beganAt;  // of the first clock
-    std::optional<Moment> _lastTold;
+    std::optional<Moment> _lastUsed;
     std::optional<Moment> _lastHalfRoundTrip;
     double _drift = MostDrift;
 };

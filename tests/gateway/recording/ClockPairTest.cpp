@@ -152,6 +152,26 @@ TEST(ClockPair, PassesOverWhatGoesBackOrComesTooOften)
     EXPECT_EQ(pair.Count(), 1U);
 }
 
+// A node reports at once when a state changes: the first round trip comes soon after a report without one.
+TEST(ClockPair, UsesARoundTripThatIsToldSoonAfterAReportWithoutOne)
+{
+    ClockPair pair;
+    pair.Add(10 * OneSecond, 10 * OneSecond, std::nullopt);
+    pair.Add(10 * OneSecond + 200 * Ms, 10 * OneSecond + 200 * Ms, Ms);
+    pair.Finish();
+    EXPECT_EQ(pair.Count(), 1U);
+}
+
+TEST(ClockPair, UsesARoundTripOfBeforeAReportWithoutOne)
+{
+    ClockPair pair;
+    pair.Add(100 * OneSecond, 100 * OneSecond, std::nullopt);
+    pair.Add(50 * OneSecond, 50 * OneSecond, Ms);
+    pair.Finish();
+    EXPECT_EQ(pair.Count(), 1U);
+    EXPECT_EQ(pair.ToSecond(50 * OneSecond)->Time, 50 * OneSecond);
+}
+
 TEST(ClockPair, HoldsWhateverAFileSays)
 {
     ClockPair pair;
