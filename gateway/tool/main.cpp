@@ -25,20 +25,27 @@ using namespace Rabit::Tool;
 namespace
 {
 
-// Says which command or option of the line there is not, with the nearest that there is. Empty if all are
-// known.
+// Says which command or option of the line there is not, with the nearest that there is, or which option
+// belongs behind its command. Empty if all are known.
 std::string UnknownWord(CLI::App &app)
 {
     CLI::App *command = &app;
+    std::string line = "rabit";
     while (!command->get_subcommands().empty())
     {
         command = command->get_subcommands().front();
+        line += " " + command->get_name();
     }
     const std::vector<std::string> rest = app.remaining(true);
     const auto isOption = [](const std::string &word) { return word.size() > 1 && word.front() == '-'; };
     std::vector<std::string> known;
     if (const auto option = std::find_if(rest.begin(), rest.end(), isOption); option != rest.end())
     {
+        if (const std::string name = option->substr(0, option->find('='));
+            command->get_option_no_throw(name) != nullptr)
+        {
+            return "the option `" + name + "` belongs behind its command: " + line + " " + name;
+        }
         for (const CLI::Option *one : command->get_options())
         {
             for (const std::string &name : one->get_lnames())
