@@ -113,17 +113,6 @@ bool ShowJson(const std::string &file, std::uint64_t size, const Contents &conte
                            {"problems", contents.Problems}});
 }
 
-// Returns the rate from the first to the last message, or over the whole file if these are not known.
-std::string RateOf(const Topic &topic, Mcap::ByteSource &source, const Contents &contents)
-{
-    const auto span = SpanOf(source, contents, topic.Channel);
-    const double seconds =
-        span ? 1e-9 * static_cast<double>(span->second - span->first) : SecondsOf(contents);
-    const std::uint64_t periods = topic.Messages - (span && topic.Messages > 0 ? 1 : 0);
-    return topic.Messages < 2 || seconds <= 0 ? "-"
-                                              : NumberText(static_cast<double>(periods) / seconds, 2, " Hz");
-}
-
 bool ShowText(const std::string &file, Mcap::ByteSource &source, const Contents &contents)
 {
     const double seconds = SecondsOf(contents);
@@ -171,8 +160,9 @@ bool ShowText(const std::string &file, Mcap::ByteSource &source, const Contents 
     }
     for (const Topic &topic : topics)
     {
+        const auto rate = Mcap::RateOf(source, contents, topic.Channel);
         table.push_back({SafeText(topic.Name), SafeText(topic.Type), std::to_string(topic.Messages),
-                         RateOf(topic, source, contents)});
+                         rate ? NumberText(*rate, 2, " Hz") : "-"});
         if (isMerged)
         {
             table.back().push_back(SafeText(topic.Life));

@@ -214,6 +214,9 @@ private:
         statistics.EndTime = std::max(statistics.EndTime, message->LogTime);
         ++statistics.MessageCount;
         ++statistics.ChannelMessageCounts[message->ChannelId];
+        const std::uint64_t time = message->LogTime;
+        auto &span = _contents.Spans.try_emplace(message->ChannelId, time, time).first->second;
+        span = {std::min(span.first, time), std::max(span.second, time)};
         return true;
     }
 
@@ -481,11 +484,14 @@ std::vector<std::uint64_t> TimesIn(ByteSource &source, const ChunkIndex &chunk, 
     return times;
 }
 
-}  // namespace
-
+// The log times of the first and the last message of the channel.
 std::optional<std::pair<std::uint64_t, std::uint64_t>> SpanOf(ByteSource &source, const Contents &contents,
                                                               std::uint16_t channel)
 {
+    if (const auto known = contents.Spans.find(channel); known != contents.Spans.end())
+    {
+        return known->second;
+    }
     std::optional<std::pair<std::uint64_t, std::uint64_t>> span;
     const auto take = [&](const ChunkIndex &chunk)
     {
@@ -508,6 +514,22 @@ std::optional<std::pair<std::uint64_t, std::uint64_t>> SpanOf(ByteSource &source
         take(chunks[chunks.size() - 1 - i]);
     }
     return span;
+}
+
+}  // namespace
+
+std::optional<double> RateOf(ByteSource &source, const Contents &contents, std::uint16_t channel)
+{
+    constexpr std::uint64_t least = 3;
+    const auto &counts = contents.Statistics.ChannelMessageCounts;
+    const auto count = counts.find(channel);
+    const auto span =
+        count == counts.end() || count->second < least ? std::nullopt : SpanOf(source, contents, channel);
+    if (!span || span->second <= span->first)
+    {
+        return std::nullopt;
+    }
+    return 1e9 * static_cast<double>(count->second - 1) / static_cast<double>(span->second - span->first);
 }
 
 bool IsRecording(ByteSource &source)

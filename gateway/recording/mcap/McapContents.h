@@ -36,6 +36,8 @@ struct Contents
     std::vector<AttachmentIndex> Attachments;
     std::vector<Metadata> MetadataRecords;  // in the order of the file
     Mcap::Statistics Statistics;
+    // Of each channel the log times of its first and last message; empty if they were read from the summary.
+    std::map<std::uint16_t, std::pair<std::uint64_t, std::uint64_t>> Spans;
     // True if the file was ended in order, and its summary was used.
     bool IsIndexed = false;
     // Where the last whole record ends; the size of an indexed file.
@@ -62,10 +64,9 @@ Contents ReadContents(ByteSource &source, const ContentsLimits &limits = {});
 // Reads the contents from all of the file, whatever its summary says.
 Contents ScanContents(ByteSource &source, const ContentsLimits &limits = {});
 
-// Returns the log times of the first and the last message of a channel; nothing if the file has no index of
-// them, as a file that was not ended in order.
-std::optional<std::pair<std::uint64_t, std::uint64_t>> SpanOf(ByteSource &source, const Contents &contents,
-                                                              std::uint16_t channel);
+// Returns how many messages of a channel were recorded in a second, from its first message to its last.
+// Nothing for less than three messages, or if an ended file has no index of them.
+std::optional<double> RateOf(ByteSource &source, const Contents &contents, std::uint16_t channel);
 
 // True if the file begins as an MCAP file.
 bool IsRecording(ByteSource &source);
