@@ -1,5 +1,6 @@
 #include "FleetCheck.h"
 
+#include <rabit/base/NaturalOrder.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/idl/NearestWord.h>
 
@@ -77,7 +78,7 @@ void CheckDomains(const Fleet &fleet, std::vector<Finding> &findings)
     const std::vector<std::set<int>> groups = ConnectedDomains(fleet);
     const auto nodesIn = [&fleet](const std::set<int> &group)
     {
-        std::set<std::string> nodes;
+        std::set<std::string, NaturalOrder> nodes;
         for (const GatewayConfig &config : fleet)
         {
             if (group.contains(config.Domain))

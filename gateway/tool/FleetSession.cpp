@@ -1,6 +1,7 @@
 #include "FleetSession.h"
 
 #include <rabit/RabitLog.h>
+#include <rabit/base/NaturalOrder.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
@@ -97,10 +98,22 @@ FleetSession::~FleetSession()
     _runner.join();
 }
 
+std::vector<FleetSession::Node> FleetSession::Nodes() const
+{
+    std::vector<Node> nodes = _explorer->Nodes();
+    std::sort(nodes.begin(), nodes.end(),
+              [](const Node &one, const Node &other) { return NaturalOrder()(one.Name, other.Name); });
+    return nodes;
+}
+
 Gateway::Fleet FleetSession::Fleet() const
 {
     _fleet->FetchMessage();
-    return *_fleet;
+    Gateway::Fleet fleet = *_fleet;
+    std::sort(fleet.nodes.begin(), fleet.nodes.end(),
+              [](const Gateway::NodeStatus &one, const Gateway::NodeStatus &other)
+              { return NaturalOrder()(one.node, other.node); });
+    return fleet;
 }
 
 bool FleetSession::WaitUntil(double seconds, const std::function<bool()> &holds)
@@ -185,6 +198,7 @@ std::vector<std::string> FleetSession::Underway() const
     const std::set<std::string> heard = Heard();
     std::vector<std::string> underway;
     std::set_difference(names.begin(), names.end(), heard.begin(), heard.end(), std::back_inserter(underway));
+    std::sort(underway.begin(), underway.end(), NaturalOrder());
     return underway;
 }
 
@@ -243,7 +257,12 @@ std::map<std::string, FleetExplorer::Subscribers> FleetSession::SubscribersOf(
     constexpr double limit = 2.0;  // the gateway answers at once, unless something is wrong with it
     _explorer->LookForSubscribers(messages);
     WaitUntil(Seconds() + limit, [this] { return _explorer->FoundSubscribers().has_value(); });
-    return _explorer->FoundSubscribers().value_or(std::map<std::string, FleetExplorer::Subscribers>());
+    auto found = _explorer->FoundSubscribers().value_or(std::map<std::string, FleetExplorer::Subscribers>());
+    for (auto &[message, subscribers] : found)
+    {
+        std::sort(subscribers.Nodes.begin(), subscribers.Nodes.end(), NaturalOrder());
+    }
+    return found;
 }
 
 double FleetSession::Seconds() const

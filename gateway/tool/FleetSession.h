@@ -56,7 +56,8 @@ public:
 
     FleetExplorer &Explorer() { return *_explorer; }
     RabitWorkspace &Workspace() { return _workspace; }
-    std::vector<Node> Nodes() const { return _explorer->Nodes(); }
+    // Both list the nodes in their NaturalOrder.
+    std::vector<Node> Nodes() const;
     Gateway::Fleet Fleet() const;
 
     static constexpr double Forever = 1e8;

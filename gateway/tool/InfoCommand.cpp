@@ -1,11 +1,11 @@
 // rabit info: the contents of recordings.
+#include <rabit/base/NaturalOrder.h>
 #include <rabit/base/UtcText.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <map>
-#include <tuple>
 
 #include "Command.h"
 #include "PlayedFiles.h"
@@ -77,7 +77,11 @@ std::vector<Topic> TopicsOf(const Contents &contents)
     }
     std::sort(topics.begin(), topics.end(),
               [](const Topic &left, const Topic &right)
-              { return std::tie(left.Name, left.Life) < std::tie(right.Name, right.Life); });
+              {
+                  const NaturalOrder isBefore;
+                  return left.Name != right.Name ? isBefore(left.Name, right.Name)
+                                                 : isBefore(left.Life, right.Life);
+              });
     return topics;
 }
 

@@ -1,4 +1,5 @@
 // rabit knew: the values that nodes had of each other's messages, and their ages.
+#include <rabit/base/NaturalOrder.h>
 #include <rabit/base/UtcText.h>
 #include <rabit/dynamic/DynamicType.h>
 
@@ -36,6 +37,8 @@ using Merge::Knowledge;
 using Merge::KnownStream;
 using Merge::KnownValue;
 using Merge::Moment;
+
+using Names = std::set<std::string, NaturalOrder>;
 
 struct Options
 {
@@ -98,8 +101,8 @@ public:
     // Reports why no stream has those names, with the names that there are.
     int NothingThere() const
     {
-        std::set<std::string> knowers;
-        std::set<std::string> known;
+        Names knowers;
+        Names known;
         for (const KnowerLife &life : Known.Lives)
         {
             knowers.insert(life.Node);
@@ -111,7 +114,7 @@ public:
                 known.insert(stream.Node + "/" + stream.Message);
             }
         }
-        const auto listed = [](const std::set<std::string> &names)
+        const auto listed = [](const Names &names)
         {
             const std::vector<std::string> list(names.begin(), names.end());
             return list.empty() ? "nothing" : ListedNames(list);

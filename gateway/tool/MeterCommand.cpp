@@ -1,4 +1,6 @@
 // rabit hz, rabit bytes, rabit age: what values of a message measure, a line for each node.
+#include <rabit/base/NaturalOrder.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -68,7 +70,7 @@ double OnAir(const Meter &meter)
 int Measure(const Columns &columns, const Options &options, FleetSession &session, Samples &samples,
             Wakeup &wakeup)
 {
-    std::map<std::string, Measured> nodes;
+    std::map<std::string, Measured, NaturalOrder> nodes;
     const double end = session.Seconds() + options.For;
     while (!wakeup.IsInterrupted() && session.Seconds() < end)
     {

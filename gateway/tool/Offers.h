@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/NaturalOrder.h>
+
 #include <cstdint>
 #include <map>
 #include <set>
@@ -24,7 +26,7 @@ struct Message
 std::vector<Message> MessagesOf(const std::vector<FleetSession::Node> &nodes);
 
 // For each type name, which nodes have which definition of it; published or accepted.
-using Definitions = std::map<std::uint64_t, std::set<std::string>>;
+using Definitions = std::map<std::uint64_t, std::set<std::string, NaturalOrder>>;
 std::map<std::string, Definitions> TypesOf(const std::vector<FleetSession::Node> &nodes);
 
 // A line for each type of which there is more than one definition.

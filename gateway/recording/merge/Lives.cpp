@@ -1,5 +1,6 @@
 #include "recording/merge/Lives.h"
 
+#include <rabit/base/NaturalOrder.h>
 #include <rabit/base/NumberIn.h>
 
 #include <algorithm>
@@ -129,9 +130,10 @@ private:
         std::stable_sort(_found.begin(), _found.end(),
                          [](const Found &one, const Found &other)
                          {
-                             return std::tie(one.Node, one.Recording, one.File.Number, one.File.Begin) <
-                                    std::tie(other.Node, other.Recording, other.File.Number,
-                                             other.File.Begin);
+                             return one.Node != other.Node
+                                        ? NaturalOrder()(one.Node, other.Node)
+                                        : std::tie(one.Recording, one.File.Number, one.File.Begin) <
+                                              std::tie(other.Recording, other.File.Number, other.File.Begin);
                          });
     }
 

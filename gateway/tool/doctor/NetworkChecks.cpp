@@ -1,5 +1,7 @@
 #include "doctor/NetworkChecks.h"
 
+#include <rabit/base/NaturalOrder.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <iterator>
@@ -16,7 +18,7 @@ std::string Listed(const std::set<std::string> &list)
     constexpr std::size_t most = 8;
     std::string text;
     std::size_t count = 0;
-    for (const std::string &entry : list)
+    for (const std::string &entry : std::set<std::string, NaturalOrder>(list.begin(), list.end()))
     {
         if (++count <= most)
         {

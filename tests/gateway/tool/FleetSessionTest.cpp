@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "../BeatSamples.h"
 #include "../MessageSample.h"
@@ -31,10 +32,11 @@ constexpr double Everybody = 120.0;       // s
 class WrittenNode
 {
 public:
-    explicit WrittenNode(const std::string &transport) : _transport(MakeTransport(transport))
+    explicit WrittenNode(const std::string &transport, const std::string &name = "uav1")
+        : _name(name), _transport(MakeTransport(transport))
     {
         TransportSettings settings;
-        settings.Node = "uav1";
+        settings.Node = name;
         settings.Incarnation = 1;
         settings.Domain = Conformance::OwnDomain();
         settings.Interfaces = {"lo"};
@@ -44,7 +46,7 @@ public:
         _writer = _session->CreateWriter({"rabit/Beat", "Rabit::Gateway::Beat", {}}, qos, {});
     }
 
-    std::uint32_t Tag() const { return NodeTagOf("uav1", 1); }
+    std::uint32_t Tag() const { return NodeTagOf(_name, 1); }
     void Beat(std::uint32_t fleetSum)
     {
         const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -55,6 +57,7 @@ public:
     }
 
 private:
+    const std::string _name;
     std::unique_ptr<Transport> _transport;
     std::unique_ptr<TransportSession> _session;
     std::unique_ptr<TransportWriter> _writer;
@@ -95,6 +98,32 @@ TEST_P(FleetSessionTest, EndsItsWaitForANodeThatNoOtherHearsEither)
     EXPECT_TRUE(session->IsEverybodyHeard());
     EXPECT_FALSE(session->WaitForOffers("uav9", Never));
     EXPECT_LT(session->Seconds(), Everybody);
+}
+
+TEST_P(FleetSessionTest, ListsNodesInTheirNaturalOrder)
+{
+    WrittenNode tenth(GetParam(), "uav10");
+    WrittenNode second(GetParam(), "uav2");
+    while (session->Nodes().size() < 3 || session->Fleet().nodes.size() < 3)
+    {
+        for (WrittenNode *one : {&node, &tenth, &second})
+        {
+            one->Beat(0);
+        }
+        std::this_thread::sleep_for(10ms);
+    }
+    std::vector<std::string> nodes;
+    for (const FleetSession::Node &one : session->Nodes())
+    {
+        nodes.push_back(one.Name);
+    }
+    std::vector<std::string> fleet;
+    for (const Gateway::NodeStatus &one : session->Fleet().nodes)
+    {
+        fleet.push_back(one.node);
+    }
+    EXPECT_EQ(nodes, (std::vector<std::string>{"uav1", "uav2", "uav10"}));
+    EXPECT_EQ(fleet, nodes);
 }
 
 TEST_P(FleetSessionTest, WaitsForANodeThatAnotherOneHears)

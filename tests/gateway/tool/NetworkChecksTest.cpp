@@ -181,12 +181,12 @@ TEST_F(NetworkChecks, DomainsThatWereOnlyListenedToAreNamedIfNoNodeWasFound)
 TEST_F(NetworkChecks, NodesWithKeysAreAProblemForWhoHasNone)
 {
     config.Domain = 7;
-    facts.Domains[7]["10.0.0.3"] = {{"plain", "uav1", "uav2"}, true, {"uav1", "uav2"}};
+    facts.Domains[7]["10.0.0.3"] = {{"plain", "uav2", "uav10"}, true, {"uav2", "uav10"}};
     facts.Domains[8]["10.0.0.3"] = {{"uav3"}, true, {"uav3"}};
     const auto findings = OfKeys(config, facts, {});
     ASSERT_THAT(findings, SizeIs(1));
     EXPECT_EQ(findings[0].How, Level::Problem);
-    EXPECT_EQ(findings[0].Text, "uav1, uav2 in domain 7 have keys, and this program has none: it stays out");
+    EXPECT_EQ(findings[0].Text, "uav2, uav10 in domain 7 have keys, and this program has none: it stays out");
     EXPECT_THAT(findings[0].Advice, HasSubstr("--keys FOLDER"));
 }
 

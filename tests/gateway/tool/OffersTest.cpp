@@ -151,6 +151,15 @@ TEST(Offers, DefinitionsThatDifferAreToldWithWhoHasWhich)
                     "0000000000000001; uav2 with 00000000000000ab"));
 }
 
+TEST(Offers, DefinitionsThatDifferNameNodesInTheirNaturalOrder)
+{
+    const auto lines =
+        Offers::Differences({NodeOf("uav10", "Pose", "Uav::Pose", 1), NodeOf("uav2", "Pose", "Uav::Pose", 1),
+                             NodeOf("uav3", "Pose", "Uav::Pose", 2)});
+    ASSERT_THAT(lines, SizeIs(1));
+    EXPECT_THAT(lines[0], ::testing::HasSubstr("`Uav::Pose`: uav2, uav10 with"));
+}
+
 TEST(Offers, WhoIsLostOffersNothing)
 {
     FleetSession::Node lost = NodeOf("uav1", "Pose", "Uav::Pose", 1);
