@@ -1,11 +1,12 @@
 #include "live/LiveServer.h"
 
+#include <boost/asio/error.hpp>
 #include <boost/asio/post.hpp>
 
 #include <random>
+#include <stdexcept>
 #include <utility>
 
-#include "FleetSession.h"
 #include "live/LiveContext.h"
 #include "live/LiveSession.h"
 
@@ -34,8 +35,11 @@ LiveServer::LiveServer(const Settings &settings) : _context(new LiveContext{sett
     }
     catch (const boost::system::system_error &error)
     {
-        throw NetworkError("viewers cannot be served at " + settings.Endpoint.address().to_string() + ":" +
-                           std::to_string(settings.Endpoint.port()) + ": " + error.code().message());
+        const bool isTaken = error.code() == boost::asio::error::address_in_use;
+        throw std::runtime_error("viewers cannot be served at " + settings.Endpoint.address().to_string() +
+                                 ":" + std::to_string(settings.Endpoint.port()) + ": " +
+                                 (isTaken ? "another program has that port; choose another one with --port"
+                                          : error.code().message()));
     }
     _server->Start("the server of viewers", [this](TcpServer::Socket socket)
                    { std::make_shared<LiveSession>(std::move(socket), *_context)->Begin(); });

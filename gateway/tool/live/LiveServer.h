@@ -50,7 +50,7 @@ public:
     // Bytes that wait for the server's own thread. Values beyond are shown to nobody, and counted.
     static constexpr std::size_t LargestBacklog = std::size_t{64} << 20;
 
-    // Starts to listen. Throws NetworkError.
+    // Starts to listen. Throws std::runtime_error.
     explicit LiveServer(const Settings &settings);
     ~LiveServer();
     LiveServer(const LiveServer &) = delete;

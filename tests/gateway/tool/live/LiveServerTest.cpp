@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -369,12 +370,23 @@ TEST(LiveServer, ASeatIsFreeAgainWhenItsViewerLeaves)
     }
 }
 
-TEST(LiveServer, APortThatIsTakenIsOneLine)
+TEST(LiveServer, APortThatIsTakenIsNamedAndIsNoFaultOfTheNetwork)
 {
     LiveServer server(Anywhere());
     LiveServer::Settings settings;
     settings.Endpoint = server.Endpoint();
-    EXPECT_THROW(LiveServer second(settings), NetworkError);
+    try
+    {
+        LiveServer second(settings);
+        FAIL() << "two servers have one port";
+    }
+    catch (const std::runtime_error &error)
+    {
+        EXPECT_EQ(dynamic_cast<const NetworkError *>(&error), nullptr);
+        EXPECT_EQ(error.what(),
+                  "viewers cannot be served at 127.0.0.1:" + std::to_string(server.Endpoint().port()) +
+                      ": another program has that port; choose another one with --port");
+    }
 }
 
 }  // namespace
