@@ -82,7 +82,7 @@ void ReadForeign(const YamlMap &map, GatewayConfig &config)
         {
             entry.Fail(entry.Line(), "a `foreign` entry has either `subscribe` or `publish`");
         }
-        entry.Read("type", rule.Type);
+        entry.ReadType("type", rule.Type);
         entry.Read("names", {"plain", "ros2"}, rule.Names);
         entry.Read("each", {"latest", "queue"}, rule.Each);
         entry.Read("capacity", rule.Capacity, 1, 1'000'000);

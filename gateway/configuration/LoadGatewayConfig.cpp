@@ -238,7 +238,7 @@ void ReadPublish(const YamlMap &map, GatewayConfig &config)
         PublishRule rule;
         rule.Line = entry.Line();
         entry.Read("message", rule.Message);
-        entry.Read("type", rule.Type);
+        entry.ReadType("type", rule.Type);
         entry.Read("max_rate", rule.MaxRate);
         rule.Class = ReadClass(entry);
         entry.Read("weight", rule.Weight);
@@ -254,7 +254,7 @@ void ReadSubscribe(const YamlMap &map, GatewayConfig &config)
         SubscribeRule rule;
         rule.Line = entry.Line();
         entry.Read("message", rule.Message);
-        entry.Read("type", rule.Type);
+        entry.ReadType("type", rule.Type);
         entry.Read("from", rule.From);
         entry.Read<std::optional<QosProfile>, QosProfile>("qos", QosProfileWords, rule.Qos);
         config.Subscribe.push_back(rule);
@@ -268,7 +268,7 @@ void ReadAccept(const YamlMap &map, GatewayConfig &config)
         AcceptRule rule;
         rule.Line = entry.Line();
         entry.Read("queue", rule.Queue);
-        entry.Read("types", rule.Types);
+        entry.ReadTypes("types", rule.Types);
         entry.Read("from", rule.From);
         config.Accept.push_back(rule);
     }

@@ -18,6 +18,11 @@ int LineOf(const YAML::Node &node)
     return node.Mark().line + 1;
 }
 
+std::string WithoutScope(const std::string &type)
+{
+    return type.starts_with("::") ? type.substr(2) : type;
+}
+
 }  // namespace
 
 YamlMap::YamlMap(std::string file, const YAML::Node &node, const ConfigSection &section)
@@ -269,6 +274,18 @@ void YamlMap::Read(const std::string &key, std::vector<std::string> &value) cons
     {
         value.push_back(Scalar(item, key, "a list of words"));
     }
+}
+
+void YamlMap::ReadType(const std::string &key, std::string &value) const
+{
+    Read(key, value);
+    value = WithoutScope(value);
+}
+
+void YamlMap::ReadTypes(const std::string &key, std::vector<std::string> &value) const
+{
+    Read(key, value);
+    std::transform(value.begin(), value.end(), value.begin(), WithoutScope);
 }
 
 int YamlMap::ReadChoice(const std::string &key, const std::vector<std::string> &choices) const

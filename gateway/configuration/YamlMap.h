@@ -62,6 +62,9 @@ public:
             value = static_cast<Enumeration>(choice);
         }
     }
+    // Read names of IDL types. A leading `::`, which IDL allows, is left out.
+    void ReadType(const std::string &key, std::string &value) const;
+    void ReadTypes(const std::string &key, std::vector<std::string> &value) const;
     // A mapping; empty if the key is missing.
     std::optional<YamlMap> Map(const std::string &key, const ConfigSection &section) const;
     std::optional<YamlMap> MapOfAnyKeys(const std::string &key, const std::string &what) const;

@@ -83,6 +83,20 @@ TEST_F(GatewayConfigTest, TakesTypesThatOnlySomebodyElseKnowsAsThatOneSays)
     }
 }
 
+TEST_F(GatewayConfigTest, ALeadingScopeOfATypeIsLeftOut)
+{
+    const GatewayConfig config = ParseGatewayConfig(
+        "node: a\npublish:\n  - {message: Pose, type: ::My::Pose}\n"
+        "subscribe:\n  - {message: Pose, type: '::My::Pose'}\n"
+        "accept:\n  - {queue: Q, types: [::My::Go, My::Stop]}\n"
+        "foreign:\n  - {subscribe: clock, as: Clock, type: ::My::Clock}\n",
+        "node.yaml", "", [](const std::string &) { return std::string(); });
+    EXPECT_EQ(config.Publish.at(0).Type, "My::Pose");
+    EXPECT_EQ(config.Subscribe.at(0).Type, "My::Pose");
+    EXPECT_EQ(config.Accept.at(0).Types, (std::vector<std::string>{"My::Go", "My::Stop"}));
+    EXPECT_EQ(config.Foreign.at(0).Type, "My::Clock");
+}
+
 TEST_F(GatewayConfigTest, ReadsWhatIsRecorded)
 {
     EXPECT_FALSE(Load("node: a\n").Record);
