@@ -5,13 +5,17 @@
 #include <rabit/base/Earliest.h>
 #include <rabit/base/Fnv1a.h>
 #include <rabit/base/LittleEndian.h>
+#include <rabit/base/NaturalOrder.h>
 #include <rabit/base/NumberIn.h>
 #include <rabit/base/Printable.h>
 #include <rabit/base/UtcText.h>
+#include <rabit/base/WithoutByteOrderMark.h>
 
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <set>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -60,5 +64,12 @@ TEST(BaseExample, TextOfTheNetworkStaysOneLineOfALog)
     EXPECT_EQ(Rabit::Printable("a name that is too long", 9), "a name...");
 }
 // [/printable]
+
+TEST(BaseExample, NamesInNaturalOrderAndTextWithoutAMark)
+{
+    const std::set<std::string, Rabit::NaturalOrder> nodes{"uav10", "uav2"};
+    EXPECT_EQ(*nodes.begin(), "uav2");
+    EXPECT_EQ(Rabit::WithoutByteOrderMark("\xEF\xBB\xBFnode: uav1"), "node: uav1");
+}
 
 }  // namespace

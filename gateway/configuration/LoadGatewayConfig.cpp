@@ -1,5 +1,6 @@
 #include <rabit/gateway/LoadGatewayConfig.h>
 
+#include <rabit/base/WithoutByteOrderMark.h>
 #include <rabit/transport/Transport.h>
 
 #include <algorithm>
@@ -55,10 +56,6 @@ int SecondDocument(const std::string &text)
     std::string line;
     for (int number = 1; std::getline(lines, line); ++number)
     {
-        if (number == 1 && line.starts_with("\xEF\xBB\xBF"))
-        {
-            line.erase(0, 3);  // a byte order mark
-        }
         const bool isMarker = line.starts_with("---") || line.starts_with("...");
         if (isMarker && (line.size() == 3 || line.find_first_of(" \t\r") == 3))
         {
@@ -82,8 +79,9 @@ int SecondDocument(const std::string &text)
     return 0;
 }
 
-YAML::Node Parse(const std::string &file, const std::string &text)
+YAML::Node Parse(const std::string &file, const std::string &content)
 {
+    const std::string text(WithoutByteOrderMark(content));
     try
     {
         const YAML::Node first = YAML::Load(text);

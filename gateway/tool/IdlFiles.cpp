@@ -1,5 +1,6 @@
 #include "IdlFiles.h"
 
+#include <rabit/base/WithoutByteOrderMark.h>
 #include <rabit/gateway/ConfigError.h>
 
 #include <fstream>
@@ -17,7 +18,7 @@ IdlFiles::IdlFiles(const std::vector<std::string> &files)
         {
             throw ConfigError(file, 0, "cannot be read");
         }
-        _texts.emplace_back(file, text.str());
+        _texts.emplace_back(file, WithoutByteOrderMark(text.str()));
     }
 }
 

@@ -2,6 +2,8 @@
 
 #include "dynamic/ShapeBuilder.h"
 
+#include <rabit/base/WithoutByteOrderMark.h>
+
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -39,6 +41,10 @@ public:
         std::string line;
         for (std::size_t number = 1; std::getline(file, line); ++number)
         {
+            if (number == 1)
+            {
+                line = std::string(WithoutByteOrderMark(line));
+            }
             const std::string place = name + ":" + std::to_string(number) + ": ";
             const std::size_t first = line.find_first_not_of(" \t");
             if (first == std::string::npos || line[first] != '#')

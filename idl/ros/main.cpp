@@ -7,6 +7,8 @@
 #include "ros/MsgToIdl.h"
 #include "ros/RosIdlText.h"
 
+#include <rabit/base/WithoutByteOrderMark.h>
+
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -28,7 +30,7 @@ std::string ReadFile(const fs::path &path)
     {
         throw std::runtime_error(path.string() + ": cannot be read");
     }
-    return text;
+    return std::string(Rabit::WithoutByteOrderMark(text));
 }
 
 // Writes the whole file or nothing.

@@ -97,6 +97,13 @@ TEST_F(GatewayConfigTest, ALeadingScopeOfATypeIsLeftOut)
     EXPECT_EQ(config.Foreign.at(0).Type, "My::Clock");
 }
 
+TEST_F(GatewayConfigTest, AByteOrderMarkAtTheBeginningIsNoPartOfTheText)
+{
+    EXPECT_EQ(Load("\xEF\xBB\xBFnode: a\ndomain: 7\n").Domain, 7);
+    EXPECT_EQ(ErrorOf("\xEF\xBB\xBF---\n---\nnode: a\n"),
+              "node.yaml:2: a second document: a configuration is one");
+}
+
 TEST_F(GatewayConfigTest, ReadsWhatIsRecorded)
 {
     EXPECT_FALSE(Load("node: a\n").Record);

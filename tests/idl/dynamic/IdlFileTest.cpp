@@ -54,6 +54,17 @@ TEST_F(IdlFileTest, AMessageHasTheTextThatTheGeneratorGivesIt)
     EXPECT_EQ(file.Constants[0], std::make_pair(std::string("Uav::Places"), std::string("64")));
 }
 
+TEST_F(IdlFileTest, AByteOrderMarkAtTheBeginningOfAFileIsNoPartOfTheText)
+{
+    const std::string mark = "\xEF\xBB\xBF";
+    Write("point.idl", mark + "module A { @nested @final struct Point { double x; }; };\n");
+    const IdlFile file = IdlFile::Load(
+        Write("a.idl", mark + "#include \"point.idl\"\nmodule A { @final struct B { Point p; }; };\n"));
+    EXPECT_THAT(file.Reason, IsEmpty());
+    ASSERT_THAT(file.Messages, SizeIs(1));
+    EXPECT_EQ(file.Messages[0]->Name(), "A::B");
+}
+
 TEST_F(IdlFileTest, FilesIncludeOthersOnceFromBesideThemAndFromFolders)
 {
     Write("shared/point.idl",

@@ -71,6 +71,18 @@ TEST(RosPackages, AreAllAccepted)
     }
 }
 
+TEST(RosPackages, AByteOrderMarkAtTheBeginningOfAFileIsNoPartOfTheText)
+{
+    const ScratchDirectory scratch;
+    const auto path = [&scratch](const char *name) { return "'" + (scratch.Path() / name).string() + "'"; };
+    EXPECT_EQ(Shell("printf '\\357\\273\\277int32 sec\\n' > " + path("Thing.msg")), 0);
+    EXPECT_EQ(Shell(std::string("'") + Paths::RosIdl + "' pkg " + path("Thing.msg") + " " +
+                    path("Thing.idl") + " 2>" + path("log")),
+              0)
+        << ReadFile(scratch.Path() / "log");
+    EXPECT_NE(ReadFile(scratch.Path() / "Thing.idl").find("    int32 sec;"), std::string::npos);
+}
+
 TEST(RosPackages, LeaveNoFileOfWhatIsRefused)
 {
     const ScratchDirectory scratch;
