@@ -2,6 +2,8 @@
 
 #include "model/Names.h"
 
+#include <strings.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cerrno>
@@ -326,11 +328,11 @@ std::string MsgReader::ReadValue(const MsgType &type, const std::string &text)
     switch (type.What)
     {
         case MsgType::Kind::Bool:
-            if (text == "true" || text == "True" || text == "1")
+            if (strcasecmp(text.c_str(), "true") == 0 || text == "1")
             {
                 return "TRUE";
             }
-            if (text != "false" && text != "False" && text != "0")
+            if (strcasecmp(text.c_str(), "false") != 0 && text != "0")
             {
                 Refuse("`" + text + "` is no value of bool; expected true or false");
             }

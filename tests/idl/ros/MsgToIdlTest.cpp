@@ -89,6 +89,13 @@ TEST(MsgToIdl, NeedsNoBlanksAroundAConstant)
               std::string::npos);
 }
 
+TEST(MsgToIdl, TakesTrueAndFalseInAnyCase)
+{
+    EXPECT_NE(IdlOf("bool X=TRUE").find("    const boolean X = TRUE;\n"), std::string::npos);
+    EXPECT_EQ(Members("bool a FALSE\nbool b tRUE"),
+              "    @default (value=FALSE) boolean a;\n    @default (value=TRUE) boolean b;\n");
+}
+
 TEST(MsgToIdl, TakesADefaultWithAnEqualSignForADefault)
 {
     EXPECT_EQ(Members("string a \"x=1\""), "    @default (value=\"x=1\") string a;\n");
