@@ -28,7 +28,7 @@ TEST(Registry, HoldsTheTypesOfAllLinkedIdlFiles)
     // Some of these types are not mentioned by any code in this program.
     EXPECT_THAT(MessageTypeRegistry::Names(),
                 IsSupersetOf({"Basics::Stamp", "Constructs::Ground", "Global", "Keys::BaseKey",
-                              "Uav::CommandAck", "Uav::TargetReport"}));
+                              "Marked::Track", "Uav::CommandAck", "Uav::TargetReport"}));
 }
 
 TEST(Registry, NamesAreSorted)
