@@ -2,12 +2,14 @@
 import {cases as fixtureCases} from './fixture_cases.mjs';
 import {cases as fleetCases} from './fleet_cases.mjs';
 import {cases as lookCases} from './look_cases.mjs';
+import {cases as mapCases} from './map_cases.mjs';
 import {cases as operatorCases} from './operator_cases.mjs';
+import {cases as orderCases} from './order_cases.mjs';
 import {closeBrowser} from './page.mjs';
 import {endAll} from './processes.mjs';
 
 const [name, bin, root] = process.argv.slice(2);
-const run = {...fixtureCases, ...fleetCases, ...lookCases, ...operatorCases}[name];
+const run = {...fixtureCases, ...fleetCases, ...lookCases, ...mapCases, ...operatorCases, ...orderCases}[name];
 if (!run) {
   console.error(`there is no case ${name}`);
   process.exit(2);
