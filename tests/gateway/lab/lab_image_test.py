@@ -29,13 +29,13 @@ SCENARIO = """  guest:
         setsid sh -c 'while :; do echo child; sleep 0.1; done' &
         sleep 999
     env: {RABIT_TEST_FOLDER: FOLDER}
-run: 20s
+run: 4P
 events:
-  - {at: 10s, kill: guest}
-  - {at: 12s, start: guest}
+  - {at: 1P, kill: guest}
+  - {at: 2P, start: guest}
 expect:
-  - guest says child within 9s after 0s
-  - guest says child within 7s after 12s
+  - guest says child within 1P after 0s
+  - guest says child within 1P after 2P
 """
 
 
