@@ -4,7 +4,6 @@ import json
 import pathlib
 import subprocess
 import sys
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
 import field  # noqa: E402,F401
@@ -22,7 +21,6 @@ class Fleet:
         self.transport = transport
         self.folder = pathlib.Path(folder)
         self.aircraft = [node for node in ground.nodes if node != "ground"]
-        self.waits = harness.Waits(ground.pids)
 
     def write(self, node, more=""):
         common = (f"node: {node}\ninterfaces: [{self.ground.address(node)}]\ntransport: {self.transport}\n"
@@ -56,30 +54,25 @@ class Fleet:
                                "ground", *MESSAGES], capture_output=True, text=True, check=True)
         return [json.loads(line) for line in done.stdout.splitlines()]
 
-    def wait_until_whole(self, nodes, seconds, posts=0):
-        """Until so many samples were posted and nothing is missing in the recording of the ground station. Returns how long it
-        took, and the figures."""
-        begin = time.monotonic()
-        while True:
-            figures = [row for node in nodes for row in self.judge(node)]
-            missing = sum(row["missing"] for row in figures)
-            took = time.monotonic() - begin
-            if missing == 0 and all(row["posted"] >= posts for row in figures if row["message"] == "Sample"):
-                return took, figures
-            if took > seconds:
-                raise AssertionError(f"after {seconds} s still missing: {figures}")
-            time.sleep(1)
+    def posted(self, node):
+        """Samples that the node's own recording has."""
+        return self.judge(node)[0]["posted"]
 
-    def wait_until_whole_but_newest(self, nodes, seconds):
-        """The same while the nodes go on posting: of the posts that were there at the beginning."""
-        posts = {(node, row["message"]): row["posted"] for node in nodes for row in self.judge(node)}
-        begin = time.monotonic()
-        while True:
-            figures = [{**row, "node": node} for node in nodes for row in self.judge(node)]
-            took = time.monotonic() - begin
-            # Posts that come meanwhile are on their way, live.
-            if all(row["oldest_missing"] >= posts[row["node"], row["message"]] for row in figures):
-                return took, figures
-            if took > seconds:
-                raise AssertionError(f"after {seconds} s still missing: {figures}")
-            time.sleep(0.5)
+    def until_posted(self, node, posts):
+        harness.until(lambda: self.posted(node) >= posts)
+
+    def wait_until_whole(self, nodes, posts=0):
+        """Until so many samples were posted and nothing is missing in the recording of the ground station. Returns the
+        figures."""
+        figures = []
+
+        def is_whole():
+            figures[:] = [row for node in nodes for row in self.judge(node)]
+            return not any(row["missing"] for row in figures) and all(
+                row["posted"] >= posts for row in figures if row["message"] == "Sample")
+
+        try:
+            harness.until(is_whole)
+        except AssertionError as error:
+            raise AssertionError(f"still missing: {figures}") from error
+        return figures

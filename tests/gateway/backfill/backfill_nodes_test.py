@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """An aircraft and a ground station. In the end the recording of the ground station has each post that is in the
-aircraft's, once, byte for byte, at its time.
+aircraft's, once, byte for byte. BackfillSimulationTest judges at which time.
 
 Usage: backfill_nodes_test.py CASE PROGRAMS TRANSPORT"""
 
@@ -10,10 +10,8 @@ import time
 
 import backfill_fleet as bf
 
-POSTS = ["--rate", "20", "--posts", "300"]
-# All clocks are this machine's, and each node knows that of the other one by half a round trip: 1 ms on an idle machine. A
-# busy machine adds what the nodes waited for a processor.
-WORST_TIME_MS = 100
+POSTS = ["--rate", "20", "--posts", 300]  # samples; ten times as few findings
+MOST = 290  # of these: what two threads post at once, the recorder may count in place of recording it
 
 
 def begin(fleet, more=""):
@@ -28,34 +26,38 @@ def begin(fleet, more=""):
 
 
 def end(fleet, least):
-    took, figures = fleet.wait_until_whole(["uav1"], bf.LIMIT, least)
-    waited_ms = 1000 * fleet.waits.between(0, time.monotonic())
-    print(f"whole after {took:.0f} s, waited for a processor for {waited_ms:.0f} ms: {figures}")
+    figures = fleet.wait_until_whole(["uav1"], least)
+    print(f"whole: {figures}")
     for row in figures:
         assert row["posted"] >= (least if row["message"] == "Sample" else least // 10), row
         assert row["twice"] == 0 and row["other_bytes"] == 0, row
         assert row["backfilled"] > 0, row
-        assert row["worst_time_ms"] < WORST_TIME_MS + waited_ms, row
+
+
+def kill_and_start(fleet, ground):
+    """Of the aircraft. Returns the number of samples of its lives before."""
+    fleet.ground.kill("uav1")
+    posts = fleet.posted("uav1")
+    since = time.monotonic()
+    fleet.start("uav1", *POSTS)
+    ground.wait_for(lambda text: text.startswith("age uav1"), bf.LIMIT, since)
+    return posts
 
 
 def killed(fleet):
     """A cut between them, and a kill -9 of each."""
     ground = begin(fleet)
-    time.sleep(3)
+    fleet.until_posted("uav1", 60)
     fleet.ground.cut("uav1")
-    time.sleep(8)
+    fleet.until_posted("uav1", 220)
     fleet.ground.heal()
-    time.sleep(2)
-    fleet.ground.kill("uav1")
-    fleet.start("uav1", *POSTS)
-    since = time.monotonic()
-    ground.wait_for(lambda text: text.startswith("age uav1"), bf.LIMIT, since)
-    time.sleep(2)
+    bf.harness.until(lambda: any(row["backfilled"] for row in fleet.judge("uav1")))
+    posts = kill_and_start(fleet, ground)
+    fleet.until_posted("uav1", posts + 40)
     fleet.ground.kill("ground")
-    time.sleep(3)
+    fleet.until_posted("uav1", posts + 100)
     fleet.start("ground")
-    time.sleep(20)  # the second life of the aircraft has posted all
-    end(fleet, 400)
+    end(fleet, posts + MOST)
 
 
 def full_disk(fleet):
@@ -65,15 +67,14 @@ def full_disk(fleet):
     subprocess.run(["mount", "-t", "tmpfs", "-o", "size=40m", "tmpfs", recordings], check=True)
     try:
         ground = begin(fleet)
-        time.sleep(2)
+        fleet.until_posted("uav1", 40)
         # 16 MB stay free whatever the configuration says.
         (recordings / "filler").write_bytes(bytes(30_000_000))
         ground.wait_for(lambda text: "nothing is recorded" in text, bf.LIMIT)
         ground.wait_for(lambda text: "nothing is requested, since nothing can be recorded" in text, bf.LIMIT)
         ground.wait_for(lambda text: text.startswith("age uav1"), bf.LIMIT, time.monotonic())  # it goes on
         (recordings / "filler").unlink()
-        time.sleep(16)
-        end(fleet, 290)
+        end(fleet, MOST)
         assert ground.running()
     finally:
         fleet.ground.kill("ground")
@@ -95,18 +96,14 @@ def secured(fleet):
     fleet.start("uav1", *POSTS)
     ground = fleet.start("ground")
     ground.wait_for(lambda text: "it does not let this node have them" in text, bf.LIMIT)
-    fleet.ground.kill("uav1")
     with open(fleet.folder / "uav1.yaml", "a", encoding="ascii") as file:
         file.write("  backfill_to: [ground]\n")
-    since = time.monotonic()
-    fleet.start("uav1", *POSTS)
-    ground.wait_for(lambda text: text.startswith("age uav1"), bf.LIMIT, since)
-    time.sleep(2)
+    posts = kill_and_start(fleet, ground)
+    fleet.until_posted("uav1", posts + 40)
     fleet.ground.cut("uav1")
-    time.sleep(5)
+    fleet.until_posted("uav1", posts + 140)
     fleet.ground.heal()
-    time.sleep(10)
-    end(fleet, 290)
+    end(fleet, posts + MOST)
 
 
 CASES = {"killed": killed, "full_disk": full_disk, "secured": secured}

@@ -10,7 +10,6 @@ import os
 import random
 import subprocess
 import sys
-import time
 
 import backfill_fleet as bf
 
@@ -53,7 +52,6 @@ def fetch_with_kills(fleet, folder):
     until_has(0.5)
     assert part.stat().st_size >= kept
     fleet.ground.kill("uav1")
-    time.sleep(1)
     fleet.start("uav1", "--rate", "1")
     assert process.exit_code(bf.LIMIT) == 0, process.lines
     assert hash_of(to) == hash_of(original)

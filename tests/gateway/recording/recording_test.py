@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
 import harness  # noqa: E402
@@ -58,14 +57,11 @@ def main():
                 sent = run(rabit, "send", *network, "--wait", "60", "sensor/Sensor", "TwoNodes::Calibration",
                            '{"offset_celsius": 1}')
                 assert sent.stdout == "delivered\n", sent
-                # Waits until both recordings have some readings on the disk.
-                end = time.monotonic() + LIMIT
-                while True:
+                def both_have_readings():
                     files = [*folder.glob("inside/*.mcap"), *folder.glob("outside/*.mcap")]
-                    if len(files) == 2 and all(count(info(rabit, file)[0], "sensor/Reading") >= 3 for file in files):
-                        break
-                    assert time.monotonic() < end, "nothing is recorded"
-                    time.sleep(0.2)
+                    return len(files) == 2 and all(count(info(rabit, file)[0], "sensor/Reading") >= 3 for file in files)
+
+                harness.until(both_have_readings)
             finally:
                 node.send_signal(signal.SIGKILL)
             outside.send_signal(signal.SIGINT)
