@@ -1,5 +1,5 @@
-"""Twenty aircraft whose processors are taken away for a while: what is old meanwhile is not shown as fresh, and all are
-UP again soon after they have their processors back.
+"""Twenty aircraft whose processors are taken away for a while: the ground station shows that, and all are UP again once they
+have their processors back. What is old is not shown as fresh: FleetTable, FleetView and rule 14 of the simulation of fleets.
 
 Usage: overload_test.py DEMO BIN TRANSPORT
 The load of others is a control group of the kernel's that gives the fleet a twentieth of what it needs; nobody else on
@@ -20,12 +20,8 @@ LIMIT_S = 240
 AIRCRAFT = 20
 # The aircraft need 0.8 of a processor.
 SHARE_PERCENT = 4
-LOAD_S = 20
-# From the end of the load to the first table in which all are UP; 1 s is usual.
-RECOVERY_S = 20
-# Poses come ten times a second. The display of an UP aircraft may be late, but by less than the time until STALE.
-OLDEST_UP_S = 2.0
-ROW = re.compile(r"\s*[\d.]+ s\s+(uav\d+)\s+(\w+)(?:\s+pose \(age ([\d.]+) s\))?")
+LOAD_S = 20  # from the first that is not UP on
+ROW = re.compile(r"\s*[\d.]+ s\s+(uav\d+)\s+(\w+)")
 
 
 class ControlGroup:
@@ -57,9 +53,7 @@ class ControlGroup:
 
     def remove(self):
         """Once its processes have ended."""
-        end = time.monotonic() + LIMIT_S
-        while (self.path / "cgroup.procs").read_text(encoding="ascii") and time.monotonic() < end:
-            time.sleep(0.1)
+        harness.until(lambda: not self.pids(), LIMIT_S)
         self.path.rmdir()
 
 
@@ -80,13 +74,6 @@ def wait_for_states(ground, holds, since):
     return ground.wait_for(look, LIMIT_S, since)
 
 
-def too_old(ground):
-    for _, text in ground.lines:
-        row = ROW.match(text)
-        if row and row[2] == "UP" and row[3] and float(row[3]) > OLDEST_UP_S:
-            yield text
-
-
 def fly(demo, programs, transport, group):
     with harness.Processes() as processes:
         ground = processes.start(
@@ -97,21 +84,11 @@ def fly(demo, programs, transport, group):
         group.limit(SHARE_PERCENT)
         # Shows that the load is one.
         wait_for_states(ground, lambda states: "STALE" in states.values() or "LOST" in states.values(), begin)
-        time.sleep(max(0, LOAD_S - (time.monotonic() - begin)))
+        time.sleep(LOAD_S)
         group.limit(None)
         end = time.monotonic()
-        waits = harness.Waits(group.pids)  # of the load of others that there may be besides
         up, _ = wait_for_states(ground, all_up, end)
-        shown = [ROW.match(text) for when, text in ground.lines if begin <= when < end]
-        told = {row[1]: row[2] for row in shown if row and row[2] != "UP"}
-        print(f"{transport}: all UP {up - end:.1f} s after a load of {end - begin:.0f} s, in which {len(told)} were not "
-              "UP, "
-              f"{list(told.values()).count('LOST')} of them LOST")
-        old = list(too_old(ground))
-        if old:
-            raise AssertionError(f"shown as UP: {old[0]}")
-        if up - end - waits.between(end, up) > RECOVERY_S:
-            raise AssertionError("too late")
+        print(f"{transport}: all UP {up - end:.1f} s after a load of {end - begin:.0f} s")
         ground.terminate(LIMIT_S)
 
 

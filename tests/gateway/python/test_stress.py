@@ -19,7 +19,7 @@ import time
 import pytest
 
 import rabit
-from conftest import DOMAINS
+from conftest import DOMAINS, wait_until
 
 SECONDS = float(os.environ.get("RABIT_STRESS", "15"))
 NUMBERS = itertools.count()
@@ -85,11 +85,7 @@ def exchange(idl, transport, folder):
             raise Trouble("handler")
 
         first.queue("Commands").on(lambda command: 1 / 0)
-        end = time.monotonic() + 120
-        while not heard.is_set() and time.monotonic() < end:
-            first.post("Pose", idl.Uav.Pose(number=1))
-            time.sleep(0.01)
-        assert heard.is_set()
+        wait_until(lambda: first.post("Pose", idl.Uav.Pose(number=1)) or heard.is_set(), 120)
         for _ in range(20):
             second.send(f"{first.name}/Commands", idl.Uav.Goto())
         misuse(idl, first)
