@@ -323,14 +323,27 @@ TEST(RabitReactor, SaysNothingOfAManagerThatWasNotToldToShutDown)
     RabitWorkspace workspace;
     RabitReactor reactor(workspace);
     reactor.SetPatience(std::chrono::milliseconds(1));
-    ScriptedManager &manager = AddTo(reactor, workspace, "Manager");
-    manager.OnWork = [&]
+    ScriptedManager &told = AddTo(reactor, workspace, "Told");
+    ScriptedManager &other = AddTo(reactor, workspace, "Other");
+    std::atomic<bool> isOver{false};
+    const auto lines = [&log](const std::string &manager)
     {
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));  // long for a reactor of that patience
-        manager.ShutdownManager();
+        const auto all = log.Lines();
+        return std::count_if(all.begin(), all.end(),
+                             [&manager](const std::string &line)
+                             { return line.find("\"" + manager + "\"") != std::string::npos; });
     };
+    told.OnWork = [&]
+    {
+        EXPECT_TRUE(Eventually([&] { return other.Passes == 1; }));
+        told.ShutdownManager();
+        EXPECT_TRUE(Eventually([&] { return lines("Told") >= 3; }));
+        EXPECT_EQ(lines("Other"), 0) << "it is in its step for longer";
+        isOver = true;
+        other.ShutdownManager();
+    };
+    other.OnWork = [&] { EXPECT_TRUE(Eventually([&] { return isOver.load(); })); };
     reactor.Run();
-    EXPECT_TRUE(log.Lines().empty()) << log.Lines().front();
 }
 
 TEST(RabitReactor, DestroysItsManagersInReverseOrder)

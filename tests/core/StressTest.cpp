@@ -293,12 +293,13 @@ TEST(Stress, SlowThrowingAndBlockingManagersDoNotHinderHealthyOnes)
     ScriptedManager *const failingStart = add("FailingStart");
     ScriptedManager *const healthy = add("Healthy");
     std::atomic<bool> release{false};
-    slow->OnWork = [] { std::this_thread::sleep_for(std::chrono::milliseconds(50)); };
     throwing->SetWakeupTimeDelayMSec(0);
     throwing->OnWork = [] { throw std::runtime_error("always"); };
     blocking->OnWork = [&] { Eventually([&] { return release.load(); }); };
     failingStart->OnStartup = [] { throw 1; };
     healthy->SetWakeupTimeDelayMSec(1);
+    slow->OnWork = [&]
+    { Eventually([&, until = healthy->Passes + 20] { return healthy->Passes >= until || release; }); };
     healthy->OnWork = [&]
     {
         // All of this happens while the blocking manager is in its first unit of work.

@@ -3,11 +3,11 @@
 #include <rabit/RabitManager.h>
 
 #include <atomic>
-#include <chrono>
 #include <functional>
 #include <string>
-#include <thread>
 #include <utility>
+
+#include "../Eventually.h"
 
 namespace RabitTest
 {
@@ -53,22 +53,5 @@ private:
         }
     }
 };
-
-// Waits for an event on another thread. Returns false only after a time so long that the event will never
-// come; a slow machine changes nothing.
-template <typename Condition>
-bool Eventually(Condition condition)
-{
-    const auto giveUp = std::chrono::steady_clock::now() + std::chrono::seconds(60);
-    while (!condition())
-    {
-        if (std::chrono::steady_clock::now() > giveUp)
-        {
-            return false;
-        }
-        std::this_thread::yield();
-    }
-    return true;
-}
 
 }  // namespace RabitTest

@@ -11,7 +11,6 @@
 #include <exception>
 #include <stdexcept>
 #include <string>
-#include <thread>
 
 namespace
 {
@@ -19,28 +18,53 @@ namespace
 using namespace Rabit;
 using namespace RabitTest;
 
+using Moment = std::chrono::steady_clock::time_point;
+
+// Returns the time once it is later than that of the last reading.
+Moment Later()
+{
+    const Moment begin = std::chrono::steady_clock::now();
+    Moment now = begin;
+    while (now == begin)
+    {
+        now = std::chrono::steady_clock::now();
+    }
+    return now;
+}
+
+void ExpectWithin(double seconds, std::chrono::duration<double> least, std::chrono::duration<double> most)
+{
+    constexpr double Rounded = 1e-6;  // of a float
+    EXPECT_GE(seconds, least.count() * (1.0 - Rounded));
+    EXPECT_LE(seconds, most.count() * (1.0 + Rounded));
+}
+
 TEST(RabitStopWatch, TickMeasuresFromTheLastTick)
 {
+    const Moment begin = Later();
     RabitStopWatch watch;
     EXPECT_EQ(watch.getTimeElapsed(), 0.0);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    const Moment first = Later();
+    const Moment second = Later();
     watch.tick();
-    EXPECT_GE(watch.getTimeElapsed(), 0.0019);
-    const double first = watch.getTimeElapsed();
-    EXPECT_EQ(watch.getTimeElapsed(), first);  // no capture, no change
+    ExpectWithin(watch.getTimeElapsed(), second - first, Later() - begin);
+    const double ticked = watch.getTimeElapsed();
+    EXPECT_EQ(watch.getTimeElapsed(), ticked);  // no capture, no change
 }
 
 TEST(RabitStopWatch, StopMeasuresFromStart)
 {
     RabitStopWatch watch;
     watch.tick();
+    const Moment begin = Later();
     watch.start();
     EXPECT_EQ(watch.getTimeElapsed(), 0.0);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    const Moment first = Later();
+    const Moment second = Later();
     watch.stop();
     const double once = watch.getTimeElapsed();
-    EXPECT_GE(once, 0.0019);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    ExpectWithin(once, second - first, Later() - begin);
+    Later();
     watch.captureTime();
     EXPECT_GT(watch.getTimeElapsed(), once);
     watch.reset();

@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "../Eventually.h"
 #include "BackendPairs.h"
 #include "DomainLease.h"
 #include "keyed.idl.h"
@@ -30,8 +31,6 @@ constexpr std::uint32_t Senders = 3;
 constexpr std::uint32_t Messages = 100;  // of each
 constexpr std::size_t Bytes = 60'000;    // all of one size, so that the size tells none apart
 constexpr int Places = 20;
-// Only keeps a broken build from hanging.
-constexpr auto Limit = 120s;
 
 std::string TextOf(std::uint32_t sender, std::uint32_t message)
 {
@@ -171,7 +170,7 @@ TEST_P(RealLargeMessagesTest, OfSeveralNodesForOneFullQueueArriveOnceAndInOrder)
     }
     for (std::future<std::ptrdiff_t> &delivered : outcomes)
     {
-        ASSERT_EQ(delivered.wait_for(Limit), std::future_status::ready);
+        ASSERT_EQ(delivered.wait_for(RabitTest::Hangs), std::future_status::ready);
         EXPECT_EQ(delivered.get(), Messages);
     }
 }

@@ -4,11 +4,10 @@
 #include <rabit/transport/TransportFactory.h>
 
 #include <algorithm>
-#include <chrono>
 #include <memory>
 #include <string>
-#include <thread>
 
+#include "../Eventually.h"
 #include "DomainLease.h"
 #include "wire/LinkTopics.h"
 
@@ -16,11 +15,6 @@ namespace Rabit
 {
 namespace
 {
-
-using namespace std::chrono_literals;
-
-// Only keeps a broken build from hanging.
-constexpr auto Limit = 60s;
 
 // A sample of this many bytes.
 class Filled final : public SampleEncoder
@@ -63,12 +57,7 @@ TEST_P(RealLinkDatagramTest, TheLargestFrameIsOneDatagram)
         const auto reader = second->CreateReader(DescribeLinkTopic(), LinkTopicQos(), {},
                                                  [](SampleBytes, const SampleInfo &) {});
         const auto writer = first->CreateWriter(DescribeLinkTopic(), LinkTopicQos(), {});
-        const auto end = std::chrono::steady_clock::now() + Limit;
-        while (writer->MatchedReaders() == 0 && std::chrono::steady_clock::now() < end)
-        {
-            std::this_thread::sleep_for(5ms);
-        }
-        ASSERT_EQ(writer->MatchedReaders(), 1);
+        ASSERT_TRUE(RabitTest::Eventually([&] { return writer->MatchedReaders() == 1; }));
         const TransportCounters before = first->Counters();
         const Filled sample(LargestLinkFrame(datagram) + LinkSampleOverhead);
         ASSERT_EQ(writer->WriteTo("ground", sample, 1), WriteResult::Ok);

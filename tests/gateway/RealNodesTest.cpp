@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "../Eventually.h"
 #include "BackendPairs.h"
 #include "DomainLease.h"
 #include "gateway.idl.h"
@@ -27,8 +28,6 @@ namespace
 using namespace std::chrono_literals;
 
 constexpr int Messages = 3000;
-// Only keeps a broken build from hanging.
-constexpr auto Limit = 120s;
 
 // Lets a test wait for what managers do on their threads.
 class Condition
@@ -46,7 +45,7 @@ public:
     bool Wait(Holds holds)
     {
         std::unique_lock lock(_mutex);
-        return _changed.wait_for(lock, Limit, holds);
+        return _changed.wait_for(lock, RabitTest::Hangs, holds);
     }
 
 private:
@@ -212,11 +211,7 @@ TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
             // Waits until the workspace and the gateway's thread have released the queue.
             const long others = watched.use_count() - 2;
             first.Workspace.AddManagerMessageQueue("Passing", next);
-            const auto end = std::chrono::steady_clock::now() + Limit;
-            while (watched.use_count() > others && std::chrono::steady_clock::now() < end)
-            {
-                std::this_thread::yield();
-            }
+            RabitTest::Eventually([&] { return watched.use_count() <= others; });
             condition.Set(
                 [&]
                 {

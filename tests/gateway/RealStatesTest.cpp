@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "../Eventually.h"
 #include "BackendPairs.h"
 #include "DomainLease.h"
 #include "gateway.idl.h"
@@ -26,8 +27,6 @@ namespace
 
 using namespace std::chrono_literals;
 
-// Only keeps a broken build from hanging.
-constexpr auto Limit = 120s;
 constexpr std::size_t States = 5;
 
 std::string NameOf(std::size_t state)
@@ -147,7 +146,7 @@ private:
             std::unique_lock lock(_mutex);
             _isSo = false;
             _holds = std::move(holds);
-            const bool isSo = _looked.wait_for(lock, Limit, [this] { return _isSo; });
+            const bool isSo = _looked.wait_for(lock, RabitTest::Hangs, [this] { return _isSo; });
             _holds = nullptr;
             return isSo;
         }

@@ -6,12 +6,11 @@
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/transport/TransportFactory.h>
 
-#include <chrono>
-#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
 
+#include "../Eventually.h"
 #include "BackendPairs.h"
 #include "DomainLease.h"
 #include "gateway.idl.h"
@@ -22,10 +21,7 @@ namespace Rabit
 namespace
 {
 
-using namespace std::chrono_literals;
-
-// Only keeps a broken build from hanging.
-constexpr auto Limit = 120s;
+using RabitTest::Eventually;
 
 class Idle : public RabitManager
 {
@@ -74,19 +70,6 @@ GatewayConfig Config(const std::string &node)
     config.Domain = Conformance::OwnDomain();
     config.Interfaces = {"lo"};
     return config;
-}
-
-bool Eventually(const std::function<bool()> &holds)
-{
-    for (const auto end = std::chrono::steady_clock::now() + Limit; !holds();)
-    {
-        if (std::chrono::steady_clock::now() > end)
-        {
-            return false;
-        }
-        std::this_thread::sleep_for(10ms);
-    }
-    return true;
 }
 
 class RealToolTest : public ::testing::TestWithParam<BackendPair>

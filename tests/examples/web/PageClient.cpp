@@ -1,5 +1,6 @@
 #include "PageClient.h"
 
+#include "../../Eventually.h"
 #include "WebStream.h"
 
 #include <boost/asio/io_context.hpp>
@@ -84,10 +85,9 @@ private:
         std::optional<beast::error_code> result;
         operation([&result](const beast::error_code &error) { result = error; });
         _io.restart();
-        const auto end = std::chrono::steady_clock::now() + Patience;
-        while (!result && std::chrono::steady_clock::now() < end)
-            if (_io.run_one_until(end) == 0)
-                break;
+        while (!result && _io.run_one_for(RabitTest::Hangs) > 0)
+        {
+        }
         if (!result)
         {
             beast::get_lowest_layer(_stream).close();

@@ -3,7 +3,6 @@
 
 #include <boost/asio/ip/tcp.hpp>
 
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,13 +10,11 @@
 namespace GroundTest
 {
 
-// Opens the WebSocket of a server. A wait that lasts longer than Patience fails. Boost.Beast, which takes
-// long to compile, stays in PageClient.cpp.
+// Opens the WebSocket of a server. A wait that hangs fails. Boost.Beast, which takes long to compile, stays
+// in PageClient.cpp.
 class PageClient
 {
 public:
-    static constexpr std::chrono::seconds Patience{20};
-
     // `cookies` is the value of the cookie header. With it the client speaks TLS, and accepts every
     // certificate.
     explicit PageClient(const boost::asio::ip::tcp::endpoint &server,

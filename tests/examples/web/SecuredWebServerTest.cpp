@@ -1,6 +1,7 @@
 // The web server with TLS and a token, as it listens beyond this machine.
 #include "WebServer.h"
 
+#include "../../Eventually.h"
 #include "../../core/CapturedLog.h"
 #include "PageClient.h"
 
@@ -26,6 +27,7 @@ using namespace std::chrono_literals;
 using boost::asio::ip::tcp;
 using Ground::WebServer;
 using GroundTest::PageClient;
+using RabitTest::Eventually;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
@@ -34,18 +36,6 @@ using testing::StartsWith;
 
 const Ground::PageFile Files[] = {{"/", "text/html; charset=utf-8", "<p>page</p>"},
                                   {"/a.js", "text/javascript; charset=utf-8", "let a;"}};
-
-bool Becomes(const std::function<bool()> &condition)
-{
-    const auto end = std::chrono::steady_clock::now() + PageClient::Patience;
-    while (!condition())
-    {
-        if (std::chrono::steady_clock::now() > end)
-            return false;
-        std::this_thread::sleep_for(1ms);
-    }
-    return true;
-}
 
 // A connection without TLS that sends any bytes.
 class RawClient
@@ -213,7 +203,7 @@ TEST_F(SecuredWebServerTest, AsksForTheTokenWithoutTls)
     RawClient page(Endpoint());
     page.Send("GET /live HTTP/1.1\r\nHost: 127.0.0.1:" + port + "\r\n" + live + "Cookie: " + cookie +
               "\r\n\r\n");
-    EXPECT_TRUE(Becomes([this] { return _server->Count().PagesOpened == 1; }));
+    EXPECT_TRUE(Eventually([this] { return _server->Count().PagesOpened == 1; }));
 }
 
 TEST_F(SecuredWebServerTest, TakesNoOrderWithoutTheToken)
@@ -286,7 +276,7 @@ TEST_F(SecuredWebServerTest, StopsAtOnceWhileGuessersWait)
                 if (TlsClient(Endpoint(), "127.0.0.2").Ask(guess).empty())
                     ++refused;
             });
-    ASSERT_TRUE(Becomes([this] { return _server->Count().Connections == 14; }));
+    ASSERT_TRUE(Eventually([this] { return _server->Count().Connections == 14; }));
     _server->Stop();
     for (std::thread &guesser : guessers)
         guesser.join();
@@ -318,7 +308,7 @@ TEST_F(SecuredWebServerTest, EndsAHandshakeThatStalls)
         client.Send(begin);
         client.Rest();  // returns when the server has closed
     }
-    EXPECT_TRUE(Becomes([this] { return _server->Count().HandshakesFailed == 2; }));
+    EXPECT_TRUE(Eventually([this] { return _server->Count().HandshakesFailed == 2; }));
 }
 
 TEST_F(SecuredWebServerTest, OpensThePageWhileHundredsOfHandshakesStall)
@@ -367,7 +357,7 @@ TEST_F(SecuredWebServerTest, GoesOnAfterHostileBytes)
         client.Rest();
     }
     EXPECT_TRUE(ServesThePage());
-    EXPECT_TRUE(Becomes([this] { return PageClient(Endpoint(), Cookie()).Open() == 101u; }));
+    EXPECT_TRUE(Eventually([this] { return PageClient(Endpoint(), Cookie()).Open() == 101u; }));
 }
 
 TEST_F(SecuredWebServerTest, SaysThatAnAnswerIsWhole)

@@ -1,5 +1,6 @@
 #include "WebServer.h"
 
+#include "../../Eventually.h"
 #include "../../core/CapturedLog.h"
 #include "PageClient.h"
 
@@ -23,6 +24,7 @@ using namespace std::chrono_literals;
 using boost::asio::ip::tcp;
 using Ground::WebServer;
 using GroundTest::PageClient;
+using RabitTest::Eventually;
 using testing::HasSubstr;
 using testing::Optional;
 using testing::StartsWith;
@@ -32,19 +34,6 @@ const Ground::PageFile Files[] = {{"/", "text/html; charset=utf-8", "<p>page</p>
 std::shared_ptr<const std::string> Text(std::string text)
 {
     return std::make_shared<const std::string>(std::move(text));
-}
-
-// Waits until the condition holds, or for so long that it never will.
-bool Becomes(const std::function<bool()> &condition)
-{
-    const auto end = std::chrono::steady_clock::now() + PageClient::Patience;
-    while (!condition())
-    {
-        if (std::chrono::steady_clock::now() > end)
-            return false;
-        std::this_thread::sleep_for(1ms);
-    }
-    return true;
 }
 
 // A plain connection that sends any bytes.
@@ -160,7 +149,8 @@ TEST_F(WebServerTest, TakesSoManyConnectionsAndNoMore)
     EXPECT_EQ(PageClient(Endpoint()).Open(), 0u);
     EXPECT_EQ(_server->Count().ConnectionsRefused, 1u);
     pages.pop_back();
-    EXPECT_TRUE(Becomes([this] { return PageClient(Endpoint()).Open() == 101u; })) << "a place became free";
+    EXPECT_TRUE(Eventually([this] { return PageClient(Endpoint()).Open() == 101u; }))
+        << "a place became free";
 }
 
 TEST_F(WebServerTest, OpensThePageWhileAStrangerHoldsHundredsOfIdleConnections)
@@ -203,7 +193,7 @@ TEST_F(WebServerTest, GivesANewPageTheLatestSnapshot)
     PageClient page(Endpoint());
     ASSERT_EQ(page.Open(), 101u);
     // Both may have been distributed before the page came, or the last one after it.
-    EXPECT_TRUE(Becomes([&] { return page.NextSeen() == "two"; }));
+    EXPECT_TRUE(Eventually([&] { return page.NextSeen() == "two"; }));
 }
 
 TEST_F(WebServerTest, GivesEveryPageEachSnapshotThatItCanFollow)
@@ -213,7 +203,7 @@ TEST_F(WebServerTest, GivesEveryPageEachSnapshotThatItCanFollow)
     PageClient b(Endpoint());
     ASSERT_EQ(a.Open(), 101u);
     ASSERT_EQ(b.Open(), 101u);
-    ASSERT_TRUE(Becomes([this] { return _server->Count().PagesOpen == 2; }));
+    ASSERT_TRUE(Eventually([this] { return _server->Count().PagesOpen == 2; }));
     for (const char *text : {"1", "2", "3", "4", "5"})
     {
         _server->Broadcast(Text(text));
@@ -230,14 +220,14 @@ TEST_F(WebServerTest, SkipsSnapshotsForAPageThatDoesNotSayThatItHasSeenThem)
     PageClient quick(Endpoint());
     ASSERT_EQ(slow.Open(), 101u);
     ASSERT_EQ(quick.Open(), 101u);
-    ASSERT_TRUE(Becomes([this] { return _server->Count().PagesOpen == 2; }));
+    ASSERT_TRUE(Eventually([this] { return _server->Count().PagesOpen == 2; }));
     for (int i = 1; i <= 50; ++i)
     {
         _server->Broadcast(Text(std::to_string(i)));
         EXPECT_THAT(quick.NextSeen(), Optional(std::to_string(i))) << "a slow page holds no other one back";
     }
     EXPECT_EQ(_server->Count().SnapshotsSent, 52u);
-    EXPECT_TRUE(Becomes([this] { return _server->Count().SnapshotsSkipped == 47; }))
+    EXPECT_TRUE(Eventually([this] { return _server->Count().SnapshotsSkipped == 47; }))
         << "the quick page may be first";
     EXPECT_THAT(slow.Next(), Optional(std::string("1")));
     EXPECT_THAT(slow.NextSeen(), Optional(std::string("2")));
@@ -262,7 +252,7 @@ TEST_F(WebServerTest, AnswersAPageThatHasNotSeenItsSnapshots)
     Start();
     PageClient page(Endpoint());
     ASSERT_EQ(page.Open(), 101u);
-    ASSERT_TRUE(Becomes([this] { return _server->Count().PagesOpen == 1; }));
+    ASSERT_TRUE(Eventually([this] { return _server->Count().PagesOpen == 1; }));
     _server->Broadcast(Text("1"));
     EXPECT_THAT(page.Next(), Optional(std::string("1")));
     _server->Broadcast(Text("2"));
@@ -283,7 +273,7 @@ TEST_F(WebServerTest, DisconnectsAPageThatSendsTooMuchAtOnceOrNoText)
     ASSERT_EQ(binary.Open(), 101u);
     binary.Send("x", false);
     EXPECT_EQ(binary.Next(), std::nullopt);
-    EXPECT_TRUE(Becomes([this] { return _server->Count().PagesOpen == 0; }));
+    EXPECT_TRUE(Eventually([this] { return _server->Count().PagesOpen == 0; }));
     EXPECT_EQ(PageClient(Endpoint()).Open(), 101u) << "it goes on";
 }
 
@@ -293,8 +283,8 @@ TEST_F(WebServerTest, DisconnectsAPageThatAsksAndTakesNoAnswers)
     PageClient page(Endpoint());
     ASSERT_EQ(page.Open(), 101u);
     // The first answers wait in the buffers of the connection; then they wait at the server.
-    EXPECT_TRUE(Becomes([&] { return !page.Send("x"); }));
-    EXPECT_TRUE(Becomes([this] { return _server->Count().PagesOpen == 0; }));
+    EXPECT_TRUE(Eventually([&] { return !page.Send("x"); }));
+    EXPECT_TRUE(Eventually([this] { return _server->Count().PagesOpen == 0; }));
 }
 
 TEST_F(WebServerTest, DisconnectsAPageThatFallsSilent)
@@ -303,8 +293,8 @@ TEST_F(WebServerTest, DisconnectsAPageThatFallsSilent)
     Start();
     PageClient page(Endpoint());  // answers no ping, for it does not read
     ASSERT_EQ(page.Open(), 101u);
-    ASSERT_TRUE(Becomes([this] { return _server->Count().PagesOpened == 1; }));
-    EXPECT_TRUE(Becomes([this] { return _server->Count().PagesOpen == 0; }));
+    ASSERT_TRUE(Eventually([this] { return _server->Count().PagesOpened == 1; }));
+    EXPECT_TRUE(Eventually([this] { return _server->Count().PagesOpen == 0; }));
 }
 
 TEST_F(WebServerTest, GoesOnAfterARequestThatCouldNotBeHandled)

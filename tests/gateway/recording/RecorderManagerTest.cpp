@@ -10,8 +10,8 @@
 #include <map>
 #include <set>
 #include <string>
-#include <thread>
 
+#include "../../Eventually.h"
 #include "../ForeignNetwork.h"
 #include "../PlainProgram.h"
 #include "../SimulatedFleet.h"
@@ -374,11 +374,12 @@ TEST_F(RecorderManagerTest, SaysInTheFleetThatNothingIsRecorded)
     Disks.at("uav1")->CreateFails = "/recordings/x: Permission denied";
     uav1.Register<Uav::Pose>("Pose")->PostMessage();
     // The recorder's own thread is not under simulated time.
-    for (int turn = 0; turn < 3000 && uav1.Problems().find("record uav1/Pose: ") == std::string::npos; ++turn)
+    const auto isTold = [&]
     {
         Fleet.RunFor(1s);
-        std::this_thread::sleep_for(10ms);
-    }
+        return uav1.Problems().find("record uav1/Pose: ") != std::string::npos;
+    };
+    EXPECT_TRUE(RabitTest::Eventually(isTold));
     EXPECT_THAT(uav1.Problems(),
                 HasSubstr("record: nothing is recorded: /recordings/x: Permission denied\n"));
     EXPECT_THAT(uav1.Problems(), HasSubstr("record uav1/Pose: 1 messages were not recorded\n"));

@@ -8,9 +8,9 @@
 #include <chrono>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "../../Eventually.h"
 #include "../BeatSamples.h"
 #include "../MessageSample.h"
 #include "DomainLease.h"
@@ -21,8 +21,6 @@ namespace Rabit::Tool
 {
 namespace
 {
-
-using namespace std::chrono_literals;
 
 // Twice this time after its start a session has heard everybody: longer than any test takes.
 constexpr std::uint16_t Period = 60'000;  // ms
@@ -78,11 +76,12 @@ protected:
     // Has the node tell that sum until the session knows, or does not know, the whole fleet by it.
     void Hear(std::uint32_t fleetSum, bool isKnown)
     {
-        while (!session->IsAnybodyThere() || session->IsFleetKnown() != isKnown)
+        const auto isSo = [&]
         {
             node.Beat(fleetSum);
-            std::this_thread::sleep_for(10ms);
-        }
+            return session->IsAnybodyThere() && session->IsFleetKnown() == isKnown;
+        };
+        ASSERT_TRUE(RabitTest::Eventually(isSo));
     }
     static bool Never() { return false; }
 
@@ -104,14 +103,15 @@ TEST_P(FleetSessionTest, ListsNodesInTheirNaturalOrder)
 {
     WrittenNode tenth(GetParam(), "uav10");
     WrittenNode second(GetParam(), "uav2");
-    while (session->Nodes().size() < 3 || session->Fleet().nodes.size() < 3)
-    {
-        for (WrittenNode *one : {&node, &tenth, &second})
+    ASSERT_TRUE(RabitTest::Eventually(
+        [&]
         {
-            one->Beat(0);
-        }
-        std::this_thread::sleep_for(10ms);
-    }
+            for (WrittenNode *one : {&node, &tenth, &second})
+            {
+                one->Beat(0);
+            }
+            return session->Nodes().size() == 3 && session->Fleet().nodes.size() == 3;
+        }));
     std::vector<std::string> nodes;
     for (const FleetSession::Node &one : session->Nodes())
     {

@@ -10,7 +10,6 @@
 #include <memory>
 #include <mutex>
 #include <set>
-#include <thread>
 #include <vector>
 
 #include "KeyExchangeMessage.h"
@@ -45,17 +44,17 @@ protected:
         const Message message = Message().To(Peer).Handshake("Req", 1, Peer);
         ASSERT_TRUE(Keys.Put(message.Datagram, *Rabit::ReadKeyExchange(message.Datagram), 0));
     }
-    // A message of Peer to `addressee` that echoes the stamp of the request.
+    // A message of Peer to `addressee` that echoes the stamp of the request. It says that the answer took the
+    // least time that can be told.
     Bytes Answer(std::uint8_t addressee)
     {
         const std::lock_guard lock(_mutex);
         Bytes answer = Message().To(addressee).Handshake("Reply", 1, addressee).Datagram;
         std::fill_n(answer.begin() + Rabit::Rtps::PrefixAt, sizeof(Rabit::KeyExchange::Prefix), Peer);
-        KeyExchangeStamp{.SentAt = 1, .Echo = KeyExchangeStamp::Of(_sent).value().SentAt}.AppendTo(answer);
+        KeyExchangeStamp{.SentAt = 1, .Echo = KeyExchangeStamp::Of(_sent).value().SentAt - 1}.AppendTo(
+            answer);
         return answer;
     }
-    // So that an answer takes some time.
-    static void Pass() { std::this_thread::sleep_for(std::chrono::milliseconds(5)); }
 
     KeyExchangeThread<int> Keys{std::make_shared<Rabit::DiscoveryTurns>(), 1400};
 
@@ -68,7 +67,6 @@ TEST_F(KeyExchangeThreadTest, AStampForThisNodeTellsTheAnswerTime)
 {
     Ask();
     const Bytes answer = Answer(Message::Self);
-    Pass();
     Keys.Came(answer);
     EXPECT_GT(Keys.AnswerTime(), KeyExchangeOutbox::Duration(0));
 }
@@ -77,7 +75,6 @@ TEST_F(KeyExchangeThreadTest, AStampForAnotherNodeTellsNothing)
 {
     Ask();
     const Bytes answer = Answer(Peer + 1);
-    Pass();
     Keys.Came(answer);
     EXPECT_EQ(Keys.AnswerTime(), KeyExchangeOutbox::Duration(0));
 }
@@ -88,7 +85,6 @@ TEST_F(KeyExchangeThreadTest, AStampAloneTellsNothing)
     const Bytes answer = Answer(Message::Self);
     Bytes stamp(answer.begin(), answer.begin() + Rabit::Rtps::RtpsHeaderSize);
     stamp.insert(stamp.end(), answer.end() - KeyExchangeStamp::Size, answer.end());
-    Pass();
     Keys.Came(stamp);
     EXPECT_EQ(Keys.AnswerTime(), KeyExchangeOutbox::Duration(0));
 }

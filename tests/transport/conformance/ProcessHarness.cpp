@@ -8,8 +8,9 @@
 #include <array>
 #include <csignal>
 #include <stdexcept>
-#include <thread>
 #include <vector>
+
+#include "../../Eventually.h"
 
 namespace Paths
 {
@@ -21,9 +22,6 @@ namespace Rabit::Conformance
 
 namespace
 {
-
-// Far longer than anything takes, also with sanitizers on a busy machine.
-constexpr std::chrono::seconds Deadline{90};
 
 // The peer program. It ends by itself when its standard input does, so it cannot outlive the test.
 class PeerProcess final : public RemoteNode
@@ -88,7 +86,7 @@ TransportSettings ProcessHarness::SettingsFor(const std::string &node, std::uint
     settings.Incarnation = incarnation;
     settings.Domain = _domain.Domain();
     settings.Interfaces = {"lo"};
-    // Long, so that a busy machine does not lose a peer that lives.
+    // Long, so that a slow machine does not lose a peer that lives.
     settings.Lease = std::chrono::seconds(60);
     settings.AnnouncementPeriod = std::chrono::milliseconds(500);
     return settings;
@@ -96,16 +94,7 @@ TransportSettings ProcessHarness::SettingsFor(const std::string &node, std::uint
 
 bool ProcessHarness::Until(const std::function<bool()> &condition)
 {
-    const auto end = std::chrono::steady_clock::now() + Deadline;
-    while (!condition())
-    {
-        if (std::chrono::steady_clock::now() > end)
-        {
-            return false;
-        }
-        std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    return true;
+    return RabitTest::Eventually(condition);
 }
 
 std::unique_ptr<RemoteNode> ProcessHarness::StartRemote(const std::string &node, std::uint64_t incarnation)

@@ -16,6 +16,7 @@
 #include <mutex>
 #include <vector>
 
+#include "../../Eventually.h"
 #include "guard/RtpsBytes.h"
 #include "guard/RtpsMessage.h"
 #include "rtps/DiscoverySubmessages.h"
@@ -34,8 +35,6 @@ using Rabit::Rtps::SubmessageHeaderSize;
 constexpr std::uint32_t GroupPort = 7400;
 constexpr std::uint32_t DiscoveryPort = 7410;
 constexpr std::uint32_t SamplesPort = 7411;
-// Only keeps a broken test from hanging.
-constexpr std::chrono::seconds Limit{60};
 
 // Keeps what comes to one port.
 class Port final : public rtps::TransportReceiverInterface
@@ -51,7 +50,8 @@ public:
     bool WaitFor(const Bytes &datagram)
     {
         std::unique_lock lock(_mutex);
-        return _changed.wait_for(lock, Limit, [&] { return std::ranges::count(_datagrams, datagram) > 0; });
+        return _changed.wait_for(lock, RabitTest::Hangs,
+                                 [&] { return std::ranges::count(_datagrams, datagram) > 0; });
     }
     std::size_t Count()
     {
@@ -76,7 +76,7 @@ public:
         address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
         socklen_t size = sizeof(address);
         auto *const any = reinterpret_cast<sockaddr *>(&address);
-        const timeval limit{.tv_sec = Limit.count(), .tv_usec = 0};
+        const timeval limit{.tv_sec = RabitTest::Hangs.count(), .tv_usec = 0};
         EXPECT_EQ(setsockopt(_socket, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof(limit)), 0);
         EXPECT_EQ(bind(_socket, any, size), 0);
         EXPECT_EQ(getsockname(_socket, any, &size), 0);
@@ -123,7 +123,7 @@ protected:
         _udp->OpenOutputChannel(_sockets, At(DiscoveryPort));
         // Sent to nobody: the transport learns the own name and ports.
         Own->Send(*_sockets.front(), ParticipantMessage(Other, DiscoveryPort), _nobody, _nobody,
-                  std::chrono::steady_clock::now() + Limit);
+                  RabitTest::WhenItHangs());
     }
     void Send(const Bytes &datagram, std::uint32_t port)
     {
@@ -132,7 +132,7 @@ protected:
         list.push_back(At(port));
         rtps::Locators begin(list.begin());
         rtps::Locators end(list.end());
-        Own->Send(*_sockets.front(), datagram, begin, end, std::chrono::steady_clock::now() + Limit);
+        Own->Send(*_sockets.front(), datagram, begin, end, RabitTest::WhenItHangs());
     }
     void Receive(Port &to, std::uint32_t port, Bytes datagram)
     {

@@ -3,17 +3,17 @@
 
 #include <gmock/gmock.h>
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "../../Eventually.h"
+
 namespace
 {
 
-using namespace std::chrono_literals;
 using Rabit::FastDds::KeepLastHistory;
 namespace rtps = Rabit::FastDds::rtps;
 
@@ -80,7 +80,7 @@ TEST_F(KeepLastHistoryTest, HasNoSampleThatIsFreedWhileItsWriterGoes)
         ASSERT_TRUE(pool->get_payload(8, *change));
         rtps::WriteParams params;
         const std::lock_guard lock(writer->getMutex());
-        ASSERT_TRUE(history.Add(*change, params, std::chrono::steady_clock::now() + 10s));
+        ASSERT_TRUE(history.Add(*change, params, RabitTest::WhenItHangs()));
     }
     history.RemoveWriter(writer);
     EXPECT_THAT(pool->Sizes, testing::ElementsAre(2u, 1u, 0u));

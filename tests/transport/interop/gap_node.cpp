@@ -8,14 +8,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <exception>
 #include <iostream>
 #include <sstream>
 #include <string>
-#include <thread>
 
+#include "../../Eventually.h"
 #include "../conformance/TestSample.h"
 
 namespace
@@ -32,10 +31,7 @@ struct Options
 void WriteLines(Rabit::TransportSession &session, bool reliable)
 {
     const auto writer = session.CreateWriter(TextTopic(), reliable ? State() : Telemetry(), {});
-    while (writer->MatchedReaders() == 0)
-    {
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
+    RabitTest::Eventually([&] { return writer->MatchedReaders() > 0; });
     std::cout << "matched" << std::endl;
     std::int64_t number = 0;
     for (std::string line; std::getline(std::cin, line);)
