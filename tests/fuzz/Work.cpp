@@ -25,7 +25,7 @@ constexpr double FreeSeconds = 0.02;
 constexpr std::uint64_t MostBytes = 1'000;
 constexpr std::uint64_t MostAllocations = 25;
 constexpr double MostSeconds = 50e-6;
-// Time is judged by the fastest of this many runs: a busy machine is not slow each time.
+// Processor time is judged by the fastest of this many runs: other programs use the same caches.
 constexpr int Tries = 3;
 
 thread_local std::uint64_t bytes = 0;

@@ -23,7 +23,6 @@ import shutil
 import subprocess
 import sys
 import tempfile
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent / "integration"))
@@ -101,11 +100,12 @@ class Guide:
         if more.startswith("exit code "):
             codes[-1] = int(more.removeprefix("exit code "))
         for (command, wanted), code in zip(commands, codes):
-            end = time.monotonic() + LIMIT_S
-            wrong, ended_with = self.wrong_with(command, wanted, code)
-            # On a busy machine a command may not have heard nodes in the time that it gives them.
-            while wrong and (more == "until it is so" or ended_with == NOT_HEARD) and time.monotonic() < end:
+            # A command may not have heard nodes in the time that it gives them.
+            def is_decided(command=command, wanted=wanted, code=code):
                 wrong, ended_with = self.wrong_with(command, wanted, code)
+                return (wrong,) if not wrong or (more != "until it is so" and ended_with != NOT_HEARD) else None
+
+            wrong, = harness.until(is_decided, LIMIT_S)
             if wrong:
                 self.fail(command, wrong)
             self.ran += 1

@@ -6,7 +6,7 @@ Usage: pairs_guard.py [--update] [--only TEXT] [--rounds N] PROGRAMS
 Raw and Rabit run in turns, and the ratio of each pair of neighbours counts: what disturbs the machine disturbs both.
 judged.py decides. The exit code is 1 if a ratio got worse, 77 if none did and one could not be judged, else 0. --update
 writes the ratios that were measured closely as the new ones. Nothing is measured while other programs compute
-(tests/quiet.py): a busy machine has other ratios.
+(tests/quiet.py): beside them the ratios are others.
 
 A sleeping processor wakes up late, which hides work. So while this measures, a process of the lowest priority keeps
 each processor awake; it takes no time from others."""

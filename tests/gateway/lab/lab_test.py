@@ -23,8 +23,8 @@ from harness import skip  # noqa: E402
 
 IMPOSSIBLE = 3
 LIMIT_S = 400  # only keeps a broken run from hanging the test
-# What a fault does comes and goes within a phase, however slow the machine is: 4 s after it as a rule. lab_parts_test.py tests
-# what the lab makes of times. In a scenario 3P are three phases.
+# A fault is seen to come and to go within a phase, as a rule after 4 s, so that the machine decides nothing.
+# lab_parts_test.py tests verdicts on times. In a scenario 3P are three phases.
 PHASE_S = 20
 
 NODES = """nodes:

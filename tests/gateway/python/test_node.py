@@ -5,7 +5,6 @@ import logging
 import signal
 import textwrap
 import threading
-import time
 
 import pytest
 
@@ -229,8 +228,8 @@ def test_beats_go_on_while_python_computes(idl, one_network):
         child.stdin.write("go\n")
         child.stdin.flush()
         assert child.stdout.readline() == "computes\n"
-        time.sleep(6)  # without beats it is LOST by then, and stays so
-        wait_until(lambda: ground.fleet().is_up("uav1"))
+        with rabit.Node("late", **one_network) as late:
+            wait_until(lambda: late.fleet().is_up("uav1"))  # by beats that were sent since
         assert child.poll() is None
         child.kill()
 
@@ -240,25 +239,24 @@ def test_beats_go_on_while_python_computes(idl, one_network):
     [
         """
         with rabit.Node("planner", **network) as node:
-            print("ready", flush=True)
             for pose in node.subscribe("uav*/Pose", idl.Uav.Pose):
-                pass
+                print("heard", flush=True)
         """,
         """
         async def main():
             async with rabit.Node("planner", **network) as node:
-                print("ready", flush=True)
                 async for pose in node.subscribe("uav*/Pose", idl.Uav.Pose):
-                    pass
+                    print("heard", flush=True)
         asyncio.run(main())
         """,
     ],
     ids=["thread", "loop"],
 )
-def test_ctrl_c_ends_a_program_that_waits(one_network, text):
-    with run(program(one_network, text)) as child:
-        assert child.stdout.readline() == "ready\n"
-        time.sleep(0.5)
+def test_ctrl_c_ends_a_program_that_waits(idl, one_network, text):
+    uav = rabit.Node("uav1", publish={"Pose": idl.Uav.Pose}, **one_network)
+    with uav, run(program(one_network, text)) as child:
+        uav.post("Pose", idl.Uav.Pose())
+        assert child.stdout.readline() == "heard\n"
         child.send_signal(signal.SIGINT)
         _, errors = child.communicate(timeout=120)
         assert child.returncode == -signal.SIGINT and errors.strip().endswith("KeyboardInterrupt")
@@ -294,8 +292,9 @@ def test_a_signal_may_stop_the_node(one_network, number):
         """
         class Planner(rabit.Manager):
             period = 0.001
-            def unit_of_work(self): self.post('Pose', idl.Uav.Pose())
-        node = rabit.Node('planner', managers=[Planner()], **network); node.start(); time.sleep(0.1)
+            def unit_of_work(self): self.post('Pose', idl.Uav.Pose()); works.set()
+        works = threading.Event()
+        node = rabit.Node('planner', managers=[Planner()], **network); node.start(); works.wait()
         """,
         "threading.Thread(target=lambda: rabit.Node('planner', **network).start()).start()",
     ],
@@ -406,20 +405,26 @@ def test_a_wait_without_end_ends_when_it_may(idl, one_network):
 
 
 def test_iterations_end_when_the_node_stops(idl, one_network):
-    ended = []
-    node = rabit.Node("planner", accept={"Commands": [idl.Uav.Goto]}, **one_network)
+    taken, ended = [], []
+
+    def read(stream):
+        for one in stream:
+            taken.append(one)
+        ended.append(stream)
+
+    node = rabit.Node("planner", publish={"Pose": idl.Uav.Pose}, accept={"Commands": [idl.Uav.Goto]}, **one_network)
     node.start()
-    threads = [
-        threading.Thread(target=lambda stream=stream: ended.append(list(stream)))
-        for stream in (node.subscribe("Pose", idl.Uav.Pose), node.queue("Commands"))
-    ]
+    threads = [threading.Thread(target=read, args=[stream])
+               for stream in (node.subscribe("Pose", idl.Uav.Pose), node.queue("Commands"))]
     for thread in threads:
         thread.start()
-    time.sleep(0.2)
+    node.post("Pose", idl.Uav.Pose())
+    node.send("Commands", idl.Uav.Goto())
+    wait_until(lambda: len(taken) == 2)
     node.stop()
     for thread in threads:
         thread.join(120)
-    assert ended == [[], []]
+    assert len(ended) == 2
 
 
 def test_a_cancelled_wait_leaves_the_loop_in_order(idl, one_network):

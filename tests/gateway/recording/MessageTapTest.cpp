@@ -29,7 +29,7 @@ std::shared_ptr<RecordingTarget> MakeTarget(const RabitClock &clock)
 }
 
 // Posts a message on a thread of its own, and holds that thread between the post and all handlers that are
-// connected later, as a busy machine may.
+// connected later, as a machine may.
 class HeldPost
 {
 public:

@@ -12,14 +12,13 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
 import harness  # noqa: E402
 
 # Only keeps a broken program from hanging.
 LIMIT = 300
-STALL_S = 30
+STALLED = 30  # readings, one a second: longer than a disk may take unnoticed
 MIB = 1 << 20
 IN_MOUNTS = "RABIT_TEST_IN_MOUNTS"
 
@@ -124,12 +123,11 @@ def stalls(fleet, stalled_disk):
     harness.until(lambda: readings(fleet.rabit, own, "sensor") > 2 and readings(fleet.rabit, outside, "fleet") > 2, LIMIT)
     turn(switch, b"\1")
     before = readings(fleet.rabit, outside, "fleet")
-    time.sleep(STALL_S)
-    at_stall = readings(fleet.rabit, own, "sensor")
     # Others go on to hear it.
-    harness.until(lambda: readings(fleet.rabit, outside, "fleet") >= before + STALL_S - 5, LIMIT)
+    harness.until(lambda: readings(fleet.rabit, outside, "fleet") >= before + STALLED, LIMIT)
+    at_stall = readings(fleet.rabit, own, "sensor")
     turn(switch, b"\0")
-    harness.until(lambda: readings(fleet.rabit, own, "sensor") >= at_stall + STALL_S - 5, LIMIT)
+    harness.until(lambda: readings(fleet.rabit, own, "sensor") >= at_stall + STALLED - 5, LIMIT)
     tool.signal(signal.SIGINT)
     assert tool.exit_code(LIMIT) == 0, tool.lines
     assert node.terminate() == 0

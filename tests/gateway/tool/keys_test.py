@@ -12,7 +12,9 @@ import subprocess
 import sys
 import tempfile
 import termios
-import time
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "integration"))
+import harness  # noqa: E402
 
 LIMIT_S = 300
 CONFIG = """node: uav1
@@ -52,8 +54,7 @@ class Shell:
                 while not shown.endswith(b": "):
                     shown += os.read(terminal, 1000)
                 # The program writes first, and then turns the echo off.
-                while termios.tcgetattr(terminal)[3] & termios.ECHO:
-                    time.sleep(0.01)
+                harness.until(lambda: not termios.tcgetattr(terminal)[3] & termios.ECHO)
                 os.write(terminal, line.encode() + b"\n")
                 shown += b"\n"
             while True:

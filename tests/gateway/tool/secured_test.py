@@ -60,7 +60,7 @@ def a_tool_with_keys_sees_and_sends(fleet):
         rows = {row["node"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
         assert rows == {"uav1", "uav2"} or not is_well(done), (number, "a short list is not marked as such", done)
     for node in ("uav1", "uav2"):
-        # On a busy machine a handshake may take longer than --wait, so the command is repeated, as a person would.
+        # A handshake may take longer than --wait, so the command is repeated, as a person would.
         def echoed(node=node):
             done = fleet.run("echo", f"{node}/Pose", "--keys", keys, "--once", "--json", "--wait", "60")
             return done.returncode == 0 and "latitude_deg" in json.loads(done.stdout)["value"]

@@ -93,7 +93,7 @@ TEST_P(NetworkSettings, GoodSettingsPassTheCheck)
 {
     auto settings = Settings("uav1");
     settings.Peers = {"127.0.0.1", "localhost:7410"};
-    // A check waits a second for a name, in which a busy machine may not look it up.
+    // A check waits a second for a name, which may not be looked up by then.
     EXPECT_TRUE(Net().Until([&] { return Backend().Check(settings).empty(); }));
 }
 

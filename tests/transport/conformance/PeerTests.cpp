@@ -75,7 +75,7 @@ TEST_P(Conformance, AKilledNodeIsLostAndItsInstancesEnd)
     EXPECT_EQ(recorder.All()[0].Node, "uav9");
     EXPECT_EQ(recorder.All()[0].Incarnation, 99u);
     remote->Kill();
-    // A busy machine may have kept it silent for three seconds before: then it is lost once more.
+    // If it was not heard for three seconds before, it is lost once more.
     ASSERT_TRUE(Until(isLost));
     EXPECT_EQ(atGround.Count(Kind::Left, "uav9", 99), 0);
     ASSERT_TRUE(Until([&] { return !recorder.All().back().Alive; }));

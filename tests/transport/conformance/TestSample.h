@@ -25,8 +25,7 @@ private:
 
 RawSample MakeSample(std::uint32_t key, const std::string &text);
 
-// Repeat Write or Dispose while the network does not take the sample in time, which a busy machine may
-// cause.
+// Repeat Write or Dispose while the network does not take the sample in time.
 WriteResult WriteOnceTaken(TransportWriter &writer, const SampleEncoder &sample, std::int64_t sourceTime);
 WriteResult DisposeOnceTaken(TransportWriter &writer, const SampleEncoder &sample, std::int64_t sourceTime);
 

@@ -53,16 +53,16 @@ def check_alive(nodes):
 
 def flood(fuzzer, nodes, seconds):
     """Until the fuzzer is done, or a node ends."""
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
+    def done():
         check_alive(nodes)
         code = None if fuzzer.running() else fuzzer.exit_code(LIMIT_S)  # then all that it said has been read
         if any(text.startswith("done ") for _, text in list(fuzzer.lines)):
             return fuzzer.wait_for(re.compile(r"done (\d+) dropped (\d+) left out (\d+)").fullmatch, LIMIT_S)[1]
         if code is not None:
             raise AssertionError(f"the fuzzer ended with {code}: {fuzzer.lines[-5:]}")
-        time.sleep(0.2)
-    raise AssertionError(f"the fuzzer is not done: {fuzzer.lines[-1:]}")
+        return None
+
+    return harness.until(done, seconds)
 
 
 def settle(node, nodes):

@@ -17,7 +17,7 @@ import harness  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 300
-# What is left of the certificate: long enough for nodes to meet on the slowest machine.
+# The certificate lasts for so long: nodes meet before that on the slowest machine.
 LIFE_S = 90
 A_YEAR = 365
 
@@ -55,7 +55,7 @@ class Case:
             return running[node].wait_for(re.compile(rf"heard {other} \d+").fullmatch, LIMIT_S, since)[0] + 0.001
 
         heard("fast", "cyclone", gone)
-        # What came before the end is told before what came from another member after it.
+        # Samples of before the end are told before those that another member sent after it.
         ended = heard("cyclone", "fast", heard("fast", "short", gone))
         heard("cyclone", "fast", heard("fast", "short", ended))
         late = [text for when, text in running["cyclone"].lines if when > ended and text.startswith("heard short")]

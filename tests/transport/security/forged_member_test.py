@@ -16,7 +16,6 @@ import socket
 import struct
 import sys
 import threading
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
@@ -180,11 +179,16 @@ def counted(node):
 def forge_until_counted(case, nodes, kind, send):
     """Sends one kind of forgery, and nothing else, until the count of each node has doubled."""
     before = {node: counted(node) for node in nodes}
-    sent, end = 0, time.monotonic() + base.LIMIT_S
-    while any(counted(node) <= before[node] for node in nodes):
-        assert time.monotonic() < end, f"{kind}: sent {sent} datagrams, but {[(node.name, counted(node)) for node in nodes]}"
+    sent = 0
+
+    def are_counted():
+        nonlocal sent
+        if all(counted(node) > before[node] for node in nodes):
+            return True
         sent += len(send())
-        time.sleep(0.1)
+        return False
+
+    harness.until(are_counted, base.LIMIT_S)
     for node in nodes:
         case.note(node, f"{kind}: {sent} datagrams were sent to all; {node.name} had dropped {before[node]}, and now "
                         f"at least {counted(node)}")

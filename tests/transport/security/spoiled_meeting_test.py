@@ -156,7 +156,7 @@ def with_another_lease(datagram, number, at, _, order):
 
 class Unconfirmed(Case):
     """The same. What was announced falsely could be used, and must not last all the same: both sides begin anew. Each
-    announcement is false until alpha listens and a handshake begins: on a busy machine the first one may be lost."""
+    announcement is false until alpha listens and a handshake begins, since the first one may be lost."""
 
     listens = begun = False
 

@@ -6,14 +6,12 @@ Usage: strangers_test.py [--silent TRANSPORT] ODD_KEYS PEER TRANSPORT...
 --silent: this vendor does not name participants that it does not let in.
 Prints for each case who said what. ODD_KEYS and PEER are programs of this folder."""
 
-import itertools
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
-import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parents[1] / "integration"))
@@ -90,15 +88,14 @@ class Case:
 
 
 def wait_until_said(expected, speakers):
-    end = time.monotonic() + LIMIT_S
-    for who, process in itertools.cycle(speakers):
-        try:
-            process.wait_for(lambda text, who=who: text.startswith(("failed", "log")) and
-                             re.search(expected, f"{who}: {text}"), 0.2)
-            return
-        except AssertionError:
-            if time.monotonic() > end:
-                raise AssertionError(f"nobody said `{expected}`") from None
+    def is_said():
+        return any(text.startswith(("failed", "log")) and re.search(expected, f"{who}: {text}")
+                   for who, process in speakers for _, text in list(process.lines))
+
+    try:
+        harness.until(is_said, LIMIT_S)
+    except AssertionError:
+        raise AssertionError(f"nobody said `{expected}`") from None
 
 
 def no_keys(_, _folder):

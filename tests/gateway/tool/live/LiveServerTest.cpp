@@ -35,7 +35,7 @@ LiveServer::Settings Anywhere()
 {
     LiveServer::Settings settings;
     settings.Endpoint.port(0);
-    settings.Silence = std::chrono::hours(1);  // on a busy machine a viewer that stalls does so for long
+    settings.Silence = std::chrono::hours(1);  // a viewer may stall for as long as the machine likes
     return settings;
 }
 

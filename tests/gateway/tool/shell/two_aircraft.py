@@ -35,9 +35,8 @@ class Rabit:
                               timeout=LIMIT, check=False)
 
     def run_until_heard(self, command, *arguments, reason=""):
-        """Lets the program wait for 4 s, and for longer if it has heard nobody by then (3), or does not give the reason: a
-        machine may be busy. For what the program looks for in vain: it waits for all of the time, since that may still
-        come."""
+        """Lets the program wait for 4 s, and for longer if it has heard nobody by then (3), or does not give the reason. For
+        what the program looks for in vain: it waits for all of the time, since that may still come."""
         done = self.run(command, *arguments, "--wait", "4")
         return self.run(command, *arguments, "--wait", "60") if done.returncode == 3 or reason not in done.stderr else done
 
