@@ -16,6 +16,7 @@ The commands run in a folder like that of the sources, in a network of their own
 Usage: guide_test.py ROOT BIN PAGE...
 """
 
+import contextlib
 import os
 import pathlib
 import re
@@ -100,14 +101,17 @@ class Guide:
         if more.startswith("exit code "):
             codes[-1] = int(more.removeprefix("exit code "))
         for (command, wanted), code in zip(commands, codes):
-            # A command may not have heard nodes in the time that it gives them.
-            def is_decided(command=command, wanted=wanted, code=code):
-                wrong, ended_with = self.wrong_with(command, wanted, code)
-                return (wrong,) if not wrong or (more != "until it is so" and ended_with != NOT_HEARD) else None
+            last = []
 
-            wrong, = harness.until(is_decided, LIMIT_S)
-            if wrong:
-                self.fail(command, wrong)
+            # A command may not have heard nodes in the time that it gives them.
+            def is_decided(command=command, wanted=wanted, code=code, last=last):
+                last[:] = self.wrong_with(command, wanted, code)
+                return not last[0] or (more != "until it is so" and last[1] != NOT_HEARD)
+
+            with contextlib.suppress(AssertionError):  # told below
+                harness.until(is_decided, LIMIT_S)
+            if last[0]:
+                self.fail(command, last[0])
             self.ran += 1
 
     def background(self, commands, name):

@@ -56,11 +56,11 @@ std::vector<Offered> Traffic(std::uint64_t bytesPerSecond)
     std::mt19937_64 random(5);
     std::vector<Offered> traffic;
     Time at{0};
-    for (int i = 0; i < 600; ++i)
+    for (int i = 0; i < 900; ++i)
     {
         const std::size_t bytes = 60 + random() % 1340;
         const auto onAir = static_cast<std::int64_t>(bytes * 1'000'000'000 / bytesPerSecond);
-        at += Time(static_cast<std::int64_t>(random() % 1000) * onAir / (i % 200 < 100 ? 1000 : 300));
+        at += 1ns + Time(static_cast<std::int64_t>(random() % 1000) * onAir / (i % 300 < 200 ? 1000 : 300));
         traffic.push_back({at, static_cast<std::uint32_t>(random() % Nodes), bytes});
     }
     return traffic;

@@ -5,6 +5,7 @@ and nothing in another's. First each of it is done to nodes without keys, to sho
 Usage: stolen_key_test.py RABIT LEDGER_NODE TRANSPORT...
 Prints for each case who said what. A ledger is what a node writes down (../../integration/README.md)."""
 
+import contextlib
 import pathlib
 import re
 import subprocess
@@ -52,10 +53,8 @@ class Node:
 
     def wait_for(self, pattern, more_than=0):
         """Lines of the ledger, once there are more than so many."""
-        try:
+        with contextlib.suppress(AssertionError):  # told below
             harness.until(lambda: len(self.find(pattern)) > more_than or not self.process.running(), LIMIT_S)
-        except AssertionError:
-            pass  # told below
         lines = self.find(pattern)
         if len(lines) > more_than:
             return lines
