@@ -2,10 +2,22 @@
 
 #include <rabit/RabitLog.h>
 
+#include <algorithm>
 #include <cstdio>
 
 namespace Rabit
 {
+namespace
+{
+
+std::string SecondsOfHang(std::chrono::nanoseconds time)
+{
+    char seconds[40];
+    std::snprintf(seconds, sizeof seconds, "%.1f s", std::chrono::duration<double>(time).count());
+    return seconds;
+}
+
+}  // namespace
 
 HangWatch::HangWatch(std::size_t managers, std::chrono::nanoseconds patience)
     : _patience(patience), _watched(managers)
@@ -13,12 +25,13 @@ HangWatch::HangWatch(std::size_t managers, std::chrono::nanoseconds patience)
 }
 
 void HangWatch::Look(std::size_t manager, const std::string &name, bool toldToShutDown, const char *step,
-                     Clock::time_point now)
+                     std::chrono::nanoseconds hangsFor, Clock::time_point now)
 {
     Watched &watched = _watched[manager];
     if (!toldToShutDown)
     {
         watched.Told = false;
+        LookAtHang(watched, name, step, hangsFor);
         return;
     }
     if (!watched.Told)
@@ -31,11 +44,29 @@ void HangWatch::Look(std::size_t manager, const std::string &name, bool toldToSh
         return;
     }
     watched.NextReport = 2 * waited;
-    char seconds[40];
-    std::snprintf(seconds, sizeof seconds, "%.1f s", std::chrono::duration<double>(waited).count());
-    RabitLog::Write(RabitLogLevel::Warning,
-                    "the reactor waits for manager \"" + name + "\", which was told to shut down " + seconds +
-                        " ago and is still in " + (step != nullptr ? step : "its loop"));
+    RabitLog::Write(RabitLogLevel::Warning, "the reactor waits for manager \"" + name +
+                                                "\", which was told to shut down " + SecondsOfHang(waited) +
+                                                " ago and is still in " +
+                                                (step != nullptr ? step : "its loop"));
+}
+
+void HangWatch::LookAtHang(Watched &watched, const std::string &name, const char *step,
+                           std::chrono::nanoseconds hangsFor) const
+{
+    if (hangsFor == std::chrono::nanoseconds::zero())
+    {
+        watched.NextHang = _patience;
+        return;
+    }
+    if (hangsFor < std::max(_patience, watched.NextHang))
+    {
+        return;
+    }
+    watched.NextHang = 2 * hangsFor;
+    RabitLog::Write(RabitLogLevel::Warning, "manager \"" + name + "\" has been in " +
+                                                (step != nullptr ? step : "its loop") + " for " +
+                                                SecondsOfHang(hangsFor) +
+                                                ": its wake-ups, its queue and a shutdown wait for it");
 }
 
 }  // namespace Rabit

@@ -8,8 +8,8 @@
 namespace Rabit
 {
 
-// Logs the managers that were told to shut down and have not ended: once after `patience`, and again each
-// time the wait has doubled. For the one thread that waits for them.
+// Logs the managers that were told to shut down and have not ended, and those that hang: once after
+// `patience`, and again each time the wait has doubled. For the one thread that waits for them.
 class HangWatch
 {
 public:
@@ -18,9 +18,9 @@ public:
     HangWatch(std::size_t managers, std::chrono::nanoseconds patience);
 
     // Called now and then for each manager that has not ended. `step` names the step that it is in; null
-    // between two steps.
+    // between two steps. `hangsFor`: it has been there for this long, which is too long; 0: it is not.
     void Look(std::size_t manager, const std::string &name, bool toldToShutDown, const char *step,
-              Clock::time_point now);
+              std::chrono::nanoseconds hangsFor, Clock::time_point now);
 
 private:
     struct Watched
@@ -28,7 +28,10 @@ private:
         bool Told = false;
         Clock::time_point Since{};
         std::chrono::nanoseconds NextReport{0};
+        std::chrono::nanoseconds NextHang{0};
     };
+    void LookAtHang(Watched &watched, const std::string &name, const char *step,
+                    std::chrono::nanoseconds hangsFor) const;
 
     const std::chrono::nanoseconds _patience;
     std::vector<Watched> _watched;

@@ -11,11 +11,14 @@ namespace Rabit
 {
 
 ManagerLease::ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeup> wakeup,
-                           std::string managerName)
-    : _workspace(workspace), _wakeup(std::move(wakeup)), _managerName(std::move(managerName))
+                           std::shared_ptr<const ManagerProgress> progress, std::string managerName)
+    : _workspace(workspace),
+      _wakeup(std::move(wakeup)),
+      _progress(std::move(progress)),
+      _managerName(std::move(managerName))
 {
     _owner = _workspace._registry->NewOwner();
-    WarnIfNotAlone(_workspace._registry->ManagerIsPresent(_owner, _managerName, _wakeup));
+    WarnIfNotAlone(_workspace._registry->ManagerIsPresent(_owner, _managerName, _wakeup, _progress));
 }
 
 ManagerLease::~ManagerLease()
@@ -95,7 +98,7 @@ void ManagerLease::Return()
         messages = _messages;
         queues = _queues;
     }
-    WarnIfNotAlone(_workspace._registry->ManagerIsPresent(_owner, _managerName, _wakeup));
+    WarnIfNotAlone(_workspace._registry->ManagerIsPresent(_owner, _managerName, _wakeup, _progress));
     for (const Message &message : messages)
     {
         Restore(message);

@@ -11,6 +11,7 @@
 
 namespace Rabit
 {
+class ManagerProgress;
 class RabitWakeup;
 
 // The registrations of one manager in its workspace. They end with the manager, go when its reactor leaves,
@@ -19,7 +20,8 @@ class ManagerLease
 {
 public:
     // Logs a warning if the workspace has a manager of that name already.
-    ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeup> wakeup, std::string managerName);
+    ManagerLease(RabitWorkspace &workspace, std::shared_ptr<RabitWakeup> wakeup,
+                 std::shared_ptr<const ManagerProgress> progress, std::string managerName);
     // If the manager never ran, its names go with it; otherwise its messages stay until a reactor leaves.
     ~ManagerLease();
     ManagerLease(const ManagerLease &) = delete;
@@ -69,6 +71,7 @@ private:
 
     RabitWorkspace &_workspace;
     const std::shared_ptr<RabitWakeup> _wakeup;
+    const std::shared_ptr<const ManagerProgress> _progress;
     const std::string _managerName;
     std::uint64_t _owner = 0;
     mutable std::mutex _mutex;

@@ -1,6 +1,7 @@
 #include <rabit/RabitManager.h>
 
 #include "ManagerLease.h"
+#include "ManagerProgress.h"
 
 #include <rabit/GlobalPublishSubscribeException.h>
 #include <rabit/RabitLog.h>
@@ -52,7 +53,8 @@ RabitManager::RabitManager(std::string name, RabitWorkspace &workspace, int queu
     : _name(std::move(name)),
       _workspace(workspace),
       _wakeup(std::make_shared<RabitWakeup>()),
-      _lease(std::make_unique<ManagerLease>(workspace, _wakeup, _name))
+      _progress(std::make_shared<ManagerProgress>()),
+      _lease(std::make_unique<ManagerLease>(workspace, _wakeup, _progress, _name))
 {
     _mgrMessageQueue_sptr = std::make_shared<RabitQueue>(queueCapacity, _name);
     RegisterQueue(_name, RabitWorkspace::MakeQueueHandle(_mgrMessageQueue_sptr));

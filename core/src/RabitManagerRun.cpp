@@ -1,5 +1,6 @@
 #include "ExceptionText.h"
 #include "ManagerLease.h"
+#include "ManagerProgress.h"
 #include "QueueRefusals.h"
 
 #include <rabit/RabitLog.h>
@@ -23,26 +24,24 @@ constexpr std::chrono::milliseconds PauseAfterFailure(10);
 constexpr std::chrono::milliseconds PauseAfterFailureWithoutDelay(100);
 // The least time between two log lines about a manager that keeps failing.
 constexpr std::chrono::seconds FailureLogPeriod(1);
-// A unit of work that takes this long is warned of: a person waits that long for Ctrl-C, and others for an
-// answer.
-constexpr std::chrono::nanoseconds LongWork = std::chrono::seconds(1);
 
 double InSeconds(std::chrono::nanoseconds duration)
 {
     return std::chrono::duration<double>(duration).count();
 }
 
-RabitManagerTrace::Step StepOf(int errorCode)
+ManagerStatusMessage::ErrorCode_e ErrorCodeOf(ManagerProgress::Step step)
 {
-    switch (errorCode)
+    switch (step)
     {
-        case ManagerStatusMessage::Error_Startup:
-            return RabitManagerTrace::Step::Startup;
-        case ManagerStatusMessage::Error_Shutdown:
-            return RabitManagerTrace::Step::Shutdown;
-        default:
-            return RabitManagerTrace::Step::UnitOfWork;
+        case ManagerProgress::Step::Startup:
+            return ManagerStatusMessage::Error_Startup;
+        case ManagerProgress::Step::Shutdown:
+            return ManagerStatusMessage::Error_Shutdown;
+        case ManagerProgress::Step::UnitOfWork:
+            break;
     }
+    return ManagerStatusMessage::Error_ExecuteUnitOfWork;
 }
 
 // Counters stay at the largest int.
@@ -137,6 +136,7 @@ void RabitManager::PrepareRun()
         TakeControlMessagesAsRead();
     }
     _trace = _workspace.TraceOf(_name);
+    _progress->Recovered();
     _startupFailed = false;
     _lastPassFailed = false;
     _loopThread.store(std::thread::id());
@@ -156,7 +156,7 @@ bool RabitManager::StartupStep()
     const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
     _statsResetAt = now;
     _statusPostedAt = now;
-    _startupFailed = !Guard("Startup", ManagerStatusMessage::Error_Startup, [this] { Startup(); });
+    _startupFailed = !Guard(ManagerProgress::Step::Startup, now, [this] { Startup(); });
     if (_startupFailed)
     {
         return false;
@@ -185,15 +185,14 @@ bool RabitManager::CycleStep()
     }
     const RabitClock &clock = _workspace.GetClock();
     const std::chrono::nanoseconds start = clock.Monotonic();
-    const bool good = Guard("ExecuteUnitOfWork", ManagerStatusMessage::Error_ExecuteUnitOfWork,
-                            [this] { ExecuteUnitOfWork(); });
+    const bool good = Guard(ManagerProgress::Step::UnitOfWork, start, [this] { ExecuteUnitOfWork(); });
     const std::chrono::nanoseconds end = clock.Monotonic();
     SystemTimeClock::GetSystemTimeClock()->ReportSteps();
     _workspace._refusals->Report();
     CountPass(start, end);
     try
     {
-        if (end - start >= LongWork)
+        if (end - start >= ManagerProgress::LongWork)
         {
             WarnOfLongWork(end - start);
         }
@@ -208,6 +207,7 @@ bool RabitManager::CycleStep()
     ObeyControlMessages();  // the unit of work may have changed them
     if (good && _lastPassFailed)
     {
+        _progress->Recovered();
         _mgrStatus_sptr->ErrorCondition = false;
         _mgrStatus_sptr->ErrorCode = ManagerStatusMessage::Error_None;
         PostStatus();
@@ -268,9 +268,10 @@ void RabitManager::EndSleepStep(std::chrono::nanoseconds now)
 void RabitManager::ShutdownStep()
 {
     _mgrStatus_sptr->RunningState = ManagerStatusMessage::MgrState_Shutdown;
-    UpdateStats(_workspace.GetClock().Monotonic());
+    const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
+    UpdateStats(now);
     PostStatus();
-    Guard("Shutdown", ManagerStatusMessage::Error_Shutdown, [this] { Shutdown(); });
+    Guard(ManagerProgress::Step::Shutdown, now, [this] { Shutdown(); });
     _loopActive.store(false);
 }
 
@@ -324,37 +325,38 @@ void RabitManager::ObeyControlMessages()
 }
 
 template <typename Work>
-bool RabitManager::Guard(const char *what, int errorCode, Work work)
+bool RabitManager::Guard(RabitManagerTrace::Step step, std::chrono::nanoseconds now, Work work)
 {
     std::string failure;
-    _step.store(what, std::memory_order_relaxed);
+    _progress->Begin(step, now);
     {
         RabitManagerTrace::Scope trace(_trace.get());
         if (_trace)
         {
-            trace.Begin(StepOf(errorCode), _wakeup->IsTurn());
+            trace.Begin(step, _wakeup->IsTurn());
         }
         try
         {
             work();
-            _step.store(nullptr, std::memory_order_relaxed);
+            _progress->End();
             return true;
         }
         catch (...)
         {
-            _step.store(nullptr, std::memory_order_relaxed);
+            _progress->End();
             trace.Threw();
             failure = CurrentExceptionText();
         }
     }
-    ReportFailure(what, errorCode, failure);
+    _progress->Failed(step, failure);
+    ReportFailure(step, failure);
     return false;
 }
 
-void RabitManager::ReportFailure(const char *what, int errorCode, const std::string &reason)
+void RabitManager::ReportFailure(RabitManagerTrace::Step step, const std::string &reason)
 {
     const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
-    const bool repeated = errorCode == ManagerStatusMessage::Error_ExecuteUnitOfWork && _lastPassFailed;
+    const bool repeated = step == ManagerProgress::Step::UnitOfWork && _lastPassFailed;
     if (repeated && now - _failureLoggedAt < FailureLogPeriod)
     {
         Increment(_failuresNotLogged);
@@ -365,15 +367,15 @@ void RabitManager::ReportFailure(const char *what, int errorCode, const std::str
             repeated && _failuresNotLogged > 0
                 ? " (and " + std::to_string(_failuresNotLogged) + " times since this was last logged)"
                 : "";
-        RabitLog::Write(RabitLogLevel::Error,
-                        "manager \"" + _name + "\": " + what + " threw: " + reason + count);
+        RabitLog::Write(RabitLogLevel::Error, "manager \"" + _name + "\": " + ManagerProgress::NameOf(step) +
+                                                  " threw: " + reason + count);
         _failureLoggedAt = now;
         _failuresNotLogged = 0;
     }
     if (!repeated)
     {
         _mgrStatus_sptr->ErrorCondition = true;
-        _mgrStatus_sptr->ErrorCode = errorCode;
+        _mgrStatus_sptr->ErrorCode = ErrorCodeOf(step);
         PostStatus();
     }
 }

@@ -2,6 +2,7 @@
 
 #include "HangWatch.h"
 #include "ManagerLease.h"
+#include "ManagerProgress.h"
 #include "ShutdownSignals.h"
 
 #include <rabit/RabitLog.h>
@@ -149,8 +150,11 @@ void RabitReactor::State::AwaitEnd(ShutdownSignals &signals)
         for (std::size_t i = 0; i < Managers.size(); ++i)
         {
             const RabitManager &manager = *Managers[i];
+            const auto trouble =
+                manager._progress->Trouble(manager._name, *manager._wakeup, Workspace.GetClock().Monotonic());
             watch.Look(i, manager._name, manager._loopActive.load() && manager._wakeup->IsShutdownRequested(),
-                       manager._step.load(), now);
+                       manager._progress->StepName(),
+                       trouble ? trouble->HangsFor : std::chrono::nanoseconds(0), now);
         }
     }
 }

@@ -263,4 +263,9 @@ std::vector<UnknownQueueInfo> RabitWorkspace::GetListOfUnknownQueues() const
     return _refusals->Unknown();
 }
 
+std::vector<ManagerTrouble> RabitWorkspace::GetListOfTroubledManagers() const
+{
+    return _registry->Troubles();
+}
+
 }  // namespace Rabit

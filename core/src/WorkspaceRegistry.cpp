@@ -1,5 +1,6 @@
 #include "WorkspaceRegistry.h"
 
+#include "ManagerProgress.h"
 #include "MessageTypes.h"
 
 #include <rabit/RabitWakeup.h>
@@ -18,13 +19,14 @@ std::uint64_t WorkspaceRegistry::NewOwner()
 }
 
 bool WorkspaceRegistry::ManagerIsPresent(std::uint64_t owner, const std::string &name,
-                                         const std::shared_ptr<RabitWakeup> &wakeup)
+                                         const std::shared_ptr<RabitWakeup> &wakeup,
+                                         const std::shared_ptr<const ManagerProgress> &progress)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     const bool alone =
         std::none_of(_present.begin(), _present.end(),
                      [&](const auto &other) { return other.first != owner && other.second.Name == name; });
-    _present.insert_or_assign(owner, PresentManager{name, wakeup});
+    _present.insert_or_assign(owner, PresentManager{name, wakeup, progress});
     return alone;
 }
 
@@ -112,6 +114,31 @@ void WorkspaceRegistry::RequestShutdownOfAllManagers()
     {
         wakeup->RequestShutdown();
     }
+}
+
+std::vector<ManagerTrouble> WorkspaceRegistry::Troubles() const
+{
+    std::vector<PresentManager> present;
+    {
+        const std::lock_guard<std::mutex> lock(_mutex);
+        for (const auto &manager : _present)
+        {
+            present.push_back(manager.second);
+        }
+    }
+    std::vector<ManagerTrouble> troubles;
+    const std::chrono::nanoseconds now = _clock->Monotonic();
+    for (const PresentManager &manager : present)
+    {
+        if (const auto trouble = manager.Progress->Trouble(manager.Name, *manager.Wakeup, now))
+        {
+            troubles.push_back(*trouble);
+        }
+    }
+    std::sort(troubles.begin(), troubles.end(),
+              [](const ManagerTrouble &one, const ManagerTrouble &other)
+              { return one.Manager < other.Manager; });
+    return troubles;
 }
 
 void WorkspaceRegistry::AddManagerName(const std::string &name, std::uint64_t owner)

@@ -13,6 +13,7 @@
 
 namespace Rabit
 {
+class ManagerProgress;
 class RabitWakeup;
 
 // The tables behind a RabitWorkspace: names, their owners, the managers present. Thread-safe; runs no user
@@ -30,13 +31,16 @@ public:
     std::uint64_t NewOwner();
     // False if another manager of that name is present.
     bool ManagerIsPresent(std::uint64_t owner, const std::string &name,
-                          const std::shared_ptr<RabitWakeup> &wakeup);
+                          const std::shared_ptr<RabitWakeup> &wakeup,
+                          const std::shared_ptr<const ManagerProgress> &progress);
     // Forgets the queues of a destroyed manager. If it never ran, also forgets all that it alone
     // registered; otherwise its messages stay until a reactor leaves.
     void ManagerIsGone(std::uint64_t owner, bool ran);
     // Forgets what only these managers registered, and everything if no manager is present any more.
     void ManagersLeave(const std::vector<std::uint64_t> &owners);
     void RequestShutdownOfAllManagers();
+    // The present managers that hang or fail now, sorted by name.
+    std::vector<ManagerTrouble> Troubles() const;
 
     // The name of a manager that was given to a reactor.
     void AddManagerName(const std::string &name, std::uint64_t owner);
@@ -77,6 +81,7 @@ private:
     {
         std::string Name;
         std::shared_ptr<RabitWakeup> Wakeup;
+        std::shared_ptr<const ManagerProgress> Progress;
     };
     struct ManagerName
     {

@@ -29,6 +29,7 @@
 namespace Rabit
 {
 class ManagerLease;
+class ManagerProgress;
 
 // A manager: a thread that runs a unit of work, sleeps, and is woken by a timer or an event. Derive from it,
 // and give it to a RabitReactor.
@@ -46,7 +47,8 @@ class ManagerLease;
 // of work: it goes on to Shutdown.
 //
 // Warnings, each once for a manager: a wake-up that its period keeps from waking it, a queue of its own that
-// nothing wakes it for, a unit of work of a second and more. They change nothing.
+// nothing wakes it for, a unit of work of a second and more. They change nothing. Others learn of a manager
+// that hangs or fails while it does (RabitWorkspace::GetListOfTroubledManagers).
 //
 // Threads: the public methods may be called from any thread unless they say otherwise. The messages and
 // queues that the protected members point to are the manager's own; others attach to the same names.
@@ -278,8 +280,8 @@ private:
     std::pair<std::shared_ptr<PublishSubscribeMessage>, std::shared_ptr<PublishSubscribeMessage>>
     ControlGlobals() const;
     template <typename Work>
-    bool Guard(const char *what, int errorCode, Work work);
-    void ReportFailure(const char *what, int errorCode, const std::string &reason);
+    bool Guard(RabitManagerTrace::Step step, std::chrono::nanoseconds now, Work work);
+    void ReportFailure(RabitManagerTrace::Step step, const std::string &reason);
     void WarnOfSettings();
     void WarnOfWakeupsBetweenTurns();
     void WarnOfQueuesWithoutWakeup();
@@ -293,6 +295,7 @@ private:
     const std::string _name;
     RabitWorkspace &_workspace;
     const std::shared_ptr<RabitWakeup> _wakeup;
+    const std::shared_ptr<ManagerProgress> _progress;  // of the step that runs just now
     const std::unique_ptr<ManagerLease> _lease;
     std::shared_ptr<RabitManagerTrace> _trace;  // of this run; null: none
 
@@ -303,7 +306,6 @@ private:
     std::thread _thread;
     std::atomic<bool> _loopActive{false};
     std::atomic<std::thread::id> _loopThread{};
-    std::atomic<const char *> _step{nullptr};  // which of the three runs just now
     // Period, wake-ups or queues, since the loop last looked at them.
     std::atomic<bool> _settingsChanged{true};
     std::atomic<bool> _delayIsChosen{false};         // by the program

@@ -14,6 +14,7 @@
 
 #include <boost/function.hpp>
 
+#include <chrono>
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -66,6 +67,15 @@ struct UnknownQueueInfo
 {
     std::string Name;
     std::uint64_t RefusedAdds;  // messages refused because no such queue existed
+};
+// A manager that does not do its work now.
+struct ManagerTrouble
+{
+    std::string Manager;
+    std::string Step;  // Startup, ExecuteUnitOfWork or Shutdown
+    // The step has not returned for this long; 0: it was left by an exception.
+    std::chrono::nanoseconds HangsFor{0};
+    std::string Failure;  // the text of that exception
 };
 
 // The names by which managers find each other's messages and queues. Most programs use the default one,
@@ -207,6 +217,13 @@ public:
     // Names of missing queues to which messages were added since the workspace was made, sorted. Names
     // beyond 200 share an entry.
     std::vector<UnknownQueueInfo> GetListOfUnknownQueues() const;
+    // The managers that hang or fail now, sorted by name:
+    // - a unit of work that has not returned for the longer of 1 s and two periods of its manager, unless the
+    //   manager never sleeps, and so may block there;
+    // - Startup or Shutdown that have not returned for 10 s;
+    // - a manager whose last unit of work, whose Startup or whose Shutdown threw.
+    // Time is that of the workspace's clock.
+    std::vector<ManagerTrouble> GetListOfTroubledManagers() const;
 
 private:
     friend class RabitReactor;
