@@ -10,6 +10,7 @@
 #include "names/NamePattern.h"
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
+#include "report/ManagerTroubles.h"
 #include "report/OtherGateways.h"
 #include "report/PathReport.h"
 
@@ -216,7 +217,8 @@ void GatewayManager::Parts::AddProblems(Duration now, Gateway::Fleet &fleet) con
     }
     for (const auto &problems : {_config.Tap ? _config.Tap->Problems() : std::vector<Gateway::Problem>(),
                                  Diagnosis::OfSubscriptions(_subscriptions, *_peers, now - _openedAt, now),
-                                 _outgoing->Problems(), _links.Problems(), _slow.Problems(now)})
+                                 _outgoing->Problems(), _links.Problems(), _slow.Problems(now),
+                                 ManagerTroubles::ProblemsOf(_workspace.GetListOfTroubledManagers())})
     {
         fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());
     }

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "report/RoughTime.h"
+
 namespace Rabit
 {
 namespace
@@ -16,17 +18,6 @@ std::string Seconds(Duration time)
     char text[32];
     std::snprintf(text, sizeof text, "%.1f s", std::chrono::duration<double>(time).count());
     return text;
-}
-
-// Rounds down to a few steps, so that the text of the problem does not change each time.
-Duration StepBelow(Duration time)
-{
-    Duration step = HandlerWatch::Slow;
-    for (const int next : {10, 60, 600, 3600})
-    {
-        step = time >= std::chrono::seconds(next) ? std::chrono::seconds(next) : step;
-    }
-    return step;
 }
 
 Gateway::Problem Row(const std::string &subject, std::string reason)
@@ -69,7 +60,7 @@ std::vector<Gateway::Problem> HandlerWatch::Problems(Duration now) const
     if (isStuck)
     {
         rows.push_back(Row(_running->Subject, "it has not returned for more than " +
-                                                  Seconds(StepBelow(now - _running->Since)) +
+                                                  RoughTime(now - _running->Since) +
                                                   "; the handlers of other messages wait for it"));
     }
     for (const auto &[subject, past] : _past)

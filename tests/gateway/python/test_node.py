@@ -211,6 +211,37 @@ def test_a_manager_runs_with_its_period_and_is_woken(idl, one_network, caplog):
     assert "a mistake in a manager" in caplog.text and "manager Counter: unit_of_work" in caplog.text
 
 
+class Troubled(rabit.Manager):
+    period = 0.1
+
+    def __init__(self, work):
+        self.work = work
+
+    def unit_of_work(self):
+        self.work()
+
+
+def rows(node, subject):
+    return [problem.reason for problem in node.fleet().problems if problem.subject == subject]
+
+
+def test_a_manager_that_hangs_is_a_problem_until_it_goes_on(one_network):
+    release = threading.Event()
+    with rabit.Node("planner", managers=[Troubled(release.wait)], **one_network) as node:
+        try:
+            found = wait_until(lambda: rows(node, "manager Troubled"))
+        finally:
+            release.set()
+        assert "its unit of work has not returned for more than 1.0 s" in found[0]
+        wait_until(lambda: not rows(node, "manager Troubled"))
+
+
+def test_a_manager_that_raises_at_each_turn_is_a_problem(one_network):
+    with rabit.Node("planner", managers=[Troubled(lambda: 1 / 0)], **one_network) as node:
+        wait_until(lambda: rows(node, "manager Troubled"))
+        assert rows(node, "manager Troubled") == ["its unit of work threw: ZeroDivisionError: division by zero"]
+
+
 def test_beats_go_on_while_python_computes(idl, one_network):
     """A regular expression that backtracks holds the GIL, and does so for years."""
     program = textwrap.dedent(f"""
