@@ -58,6 +58,12 @@ RabitQueueReceipt::Counts RabitQueueReceipt::GetCounts() const
     return _counts;
 }
 
+std::string RabitQueueReceipt::RefusalReason() const
+{
+    const std::lock_guard<std::mutex> lock(*_mutex);
+    return _refusalReason;
+}
+
 RabitConnection RabitQueueReceipt::ConnectOutcomeKnown(RabitHandler handler)
 {
     return _known.Connect(std::move(handler));
@@ -74,8 +80,12 @@ void RabitQueueReceipt::Settle(QueueOutcome outcome)
     End(outcome, true);
 }
 
-void RabitQueueReceipt::Refuse()
+void RabitQueueReceipt::Refuse(std::string reason)
 {
+    {
+        const std::lock_guard<std::mutex> lock(*_mutex);
+        _refusalReason = std::move(reason);
+    }
     End(QueueOutcome::Refused, false);
 }
 

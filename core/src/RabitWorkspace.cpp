@@ -139,24 +139,27 @@ bool RabitWorkspace::ForwardMessage(const std::string &name, const std::shared_p
 bool RabitWorkspace::RefuseUnknown(const std::string &name, const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     _refusals->NoteUnknown(name);
-    return TellReceipt(receipt, false);
+    return TellRefused(receipt, RefusalReasonOf(QueueAddResult::UnknownQueue, name));
 }
 
-bool RabitWorkspace::TellReceipt(const std::shared_ptr<RabitQueueReceipt> &receipt, bool delivered)
+bool RabitWorkspace::TellDelivered(const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     if (receipt)
     {
         receipt->Begin();
-        if (delivered)
-        {
-            receipt->Settle(QueueOutcome::Delivered);
-        }
-        else
-        {
-            receipt->Refuse();
-        }
+        receipt->Settle(QueueOutcome::Delivered);
     }
-    return delivered;
+    return true;
+}
+
+bool RabitWorkspace::TellRefused(const std::shared_ptr<RabitQueueReceipt> &receipt, std::string reason)
+{
+    if (receipt)
+    {
+        receipt->Begin();
+        receipt->Refuse(std::move(reason));
+    }
+    return false;
 }
 
 bool RabitWorkspace::AddPublishSubscribeMessage(std::string name, std::shared_ptr<RabitMessage> msg)

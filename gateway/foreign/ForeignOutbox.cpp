@@ -92,7 +92,7 @@ bool ForeignOutbox::Add(const RabitMessage &message, const Receipt &receipt)
     if (!reason.empty())
     {
         TellRefused(_type.Name(), told, reason);
-        return Refuse(receipt, std::move(reason));
+        return Refuse(receipt, reason);
     }
     if (_tap)
     {
@@ -105,18 +105,18 @@ bool ForeignOutbox::Add(const RabitMessage &message, const Receipt &receipt)
     return true;
 }
 
-bool ForeignOutbox::Refuse(const Receipt &receipt, std::string reason)
+bool ForeignOutbox::Refuse(const Receipt &receipt, const std::string &reason)
 {
     const Duration now = _clock.Monotonic();
     {
         const std::lock_guard lock(_mutex);
         ++_refused;
-        _reason = std::move(reason);
+        _reason = reason;
         _refusedAt = now;
     }
     if (receipt)
     {
-        receipt->Refuse();
+        receipt->Refuse(reason);
     }
     return false;
 }

@@ -77,7 +77,7 @@ public:
 
 private:
     // Returns false.
-    bool Refuse(const Receipt &receipt, std::string reason);
+    bool Refuse(const Receipt &receipt, const std::string &reason);
     void TellRefused(std::string_view type, const std::vector<std::uint8_t> &sample,
                      const std::string &reason) const;
 

@@ -28,11 +28,11 @@ std::pair<std::string, std::string> Split(const std::string &queueName)
 }
 
 // Returns false.
-bool RefuseAtCall(const std::shared_ptr<RabitQueueReceipt> &receipt)
+bool RefuseAtCall(const std::shared_ptr<RabitQueueReceipt> &receipt, const std::string &reason)
 {
     if (receipt)
     {
-        receipt->Refuse();
+        receipt->Refuse(reason);
     }
     return false;
 }
@@ -63,11 +63,11 @@ bool OutgoingQueues::Forward(const std::string &queueName, const std::shared_ptr
     const auto [node, queue] = Split(queueName);
     if (node == _ownNode)
     {
-        const bool added = _workspace.DeliverToQueue(queue, message) == QueueAddResult::Ok;
+        const QueueAddResult added = _workspace.DeliverToQueue(queue, message);
         Begin(receipt, 1);
-        if (!added)
+        if (added != QueueAddResult::Ok)
         {
-            return RefuseAtCall(receipt);
+            return RefuseAtCall(receipt, RefusalReasonOf(added, queue));
         }
         if (receipt)
         {
@@ -140,8 +140,9 @@ bool OutgoingQueues::ForwardToAll(const std::string &queue, const MessageType &t
         RemoteQueues::Answer answer = _remote.WhyNoneAccepts(queue, type.Name(), DefinitionHash(type));
         const std::string reason = "no live node accepts `" + type.Name() + "` for `" + queue + "`";
         TellRefused("*", queue, type, payload, reason);
-        return Refuse("*", queue, answer.What, answer.Reason.empty() ? "" : reason + ": " + answer.Reason,
-                      receipt);
+        const std::string problem = answer.Reason.empty() ? "" : reason + ": " + answer.Reason;
+        _refusals.Add("*", queue, answer.What, problem, _workspace.GetClock().Monotonic());
+        return RefuseAtCall(receipt, problem.empty() ? reason : problem);
     }
     if (!nodes.Accepting.empty())
     {
@@ -173,8 +174,9 @@ bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue
     const LinkRefusal refusal = _links.Enqueue(node, queue, type.Name(), payload, receipt);
     if (refusal != LinkRefusal::None)
     {
-        TellRefused(node, queue, type, payload, std::string(ToString(refusal)));
-        return RefuseAtCall(receipt);  // counted by the link
+        const std::string reason(ToString(refusal));
+        TellRefused(node, queue, type, payload, reason);
+        return RefuseAtCall(receipt, reason);  // counted by the link
     }
     _refusals.Forgive(node, queue);
     return true;
@@ -193,7 +195,7 @@ bool OutgoingQueues::Refuse(const std::string &node, const std::string &queue, Q
                             const std::string &reason, const Receipt &receipt)
 {
     _refusals.Add(node, queue, acceptance, reason, _workspace.GetClock().Monotonic());
-    return RefuseAtCall(receipt);
+    return RefuseAtCall(receipt, reason);
 }
 
 std::vector<Gateway::Problem> OutgoingQueues::Problems() const

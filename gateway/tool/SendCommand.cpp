@@ -158,10 +158,9 @@ public:
             return Tell("refused", misfit);
         }
         auto receipt = std::make_shared<RabitQueueReceipt>();
-        const std::uint64_t refusals = Refusals();
         if (!_session.Workspace().AddMessageToQueue(_options.Address, message, receipt))
         {
-            const std::string reason = WhyRefused(refusals);
+            const std::string reason = receipt->RefusalReason();
             Output::Talk("refused" + (reason.empty() ? "" : ": " + reason));
             return Tell("refused", reason);
         }
@@ -191,29 +190,6 @@ private:
                                                          {"reason", reason}})
                                        : Output::Line(outcome);
         return outcome == "delivered";
-    }
-
-    std::uint64_t Refusals() const
-    {
-        std::uint64_t count = 0;
-        for (const Gateway::LinkStatus &link : _session.Fleet().links)
-        {
-            count += link.refused_full + link.refused_type + link.refused_unknown;
-        }
-        return count;
-    }
-
-    std::string WhyRefused(std::uint64_t before)
-    {
-        _session.WaitUntil(_session.Seconds() + 2.0, [&] { return Refusals() != before; });
-        for (const Gateway::Problem &problem : _session.Fleet().problems)
-        {
-            if (problem.subject == "send " + _options.Address)
-            {
-                return problem.reason;
-            }
-        }
-        return "";
     }
 
     const Options &_options;

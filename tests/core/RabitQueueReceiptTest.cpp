@@ -10,6 +10,7 @@
 #include <thread>
 #include <vector>
 
+#include "CapturedLog.h"
 #include "SteppedFixture.h"
 #include "TestMessages.h"
 
@@ -86,6 +87,35 @@ TEST(RabitQueueReceipt, CountsARefusalAtTheCallAndCallsNoHandler)
     EXPECT_EQ(receipt.GetCounts().Refused, 1u);
     EXPECT_EQ(receipt.GetCounts().Pending, 0u);
     EXPECT_THROW(receipt.Refuse(), std::logic_error);
+}
+
+TEST(RabitQueueReceipt, TellsWhyTheLastRefusedMessageWasRefused)
+{
+    RabitQueueReceipt receipt;
+    receipt.Begin(3);
+    EXPECT_EQ(receipt.RefusalReason(), "");
+    receipt.Refuse("first");
+    receipt.Refuse("second");
+    receipt.Settle(QueueOutcome::Delivered);
+    EXPECT_EQ(receipt.RefusalReason(), "second");
+}
+
+TEST(RabitQueueReceipt, TellsWhyALocalQueueRefusedAMessage)
+{
+    RabitTest::CapturedLog log;
+    RabitWorkspace workspace;
+    const auto queue = std::make_shared<RabitMessageQueue<std::shared_ptr<RabitMessage>>>(1, "Small");
+    workspace.AddManagerMessageQueue("Small", queue);
+    const auto reasonOf = [&](const std::string &name, const std::shared_ptr<RabitMessage> &message)
+    {
+        const auto receipt = NewReceipt();
+        workspace.AddMessageToQueue(name, message, receipt);
+        return receipt->RefusalReason();
+    };
+    EXPECT_EQ(reasonOf("Small", std::make_shared<NumberMessage>()), "");
+    EXPECT_EQ(reasonOf("Small", std::make_shared<NumberMessage>()), "the queue `Small` is full");
+    EXPECT_EQ(reasonOf("Smal", std::make_shared<NumberMessage>()), "there is no queue `Smal`");
+    EXPECT_EQ(reasonOf("Small", nullptr), "the message is a null pointer");
 }
 
 TEST(RabitQueueReceipt, CallsHandlersAtTheRefusalThatEndsAWaitForOtherMessages)

@@ -208,6 +208,7 @@ TEST_F(ForeignQueueTest, NoMoreThanTheCapacityWaitsAndRefusalsAreCountedUntilThe
     const auto receipt = std::make_shared<RabitQueueReceipt>();
     EXPECT_FALSE(Add(3, receipt));
     EXPECT_EQ(receipt->Outcome(), QueueOutcome::Refused);
+    EXPECT_EQ(receipt->RefusalReason(), "messages come faster than they can be sent, and no more may wait");
     EXPECT_EQ(Publisher().Status().refused, 1u);
     EXPECT_EQ(ProblemText(),
               "foreign contacts: messages are refused: messages come faster than they can be sent, and no "

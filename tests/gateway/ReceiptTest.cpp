@@ -105,6 +105,22 @@ TEST_F(ReceiptTest, SaysInDoubtWhenTheReceiverRestartedBeforeItAcknowledged)
     EXPECT_EQ(receipt->Outcome(), QueueOutcome::InDoubt);
 }
 
+TEST_F(ReceiptTest, TellsWhyAMessageWasRefusedAtTheCall)
+{
+    ground.AddIdleManager("Commands");
+    EXPECT_EQ(Send()->RefusalReason(), "");
+    EXPECT_THAT(Send("uav9/MissionControl")->RefusalReason(),
+                HasSubstr("no node `uav9` has announced itself"));
+    EXPECT_THAT(Send("uav1/Mission")->RefusalReason(), HasSubstr("`Mission`"));
+    EXPECT_EQ(Send("*/Nothing")->RefusalReason(), "no live node accepts `Uav::Goto` for `Nothing`");
+    EXPECT_EQ(Send("ground/Comands")->RefusalReason(), "there is no queue `Comands`");
+    for (int i = 0; i < RabitManager::DefaultQueueCapacity; ++i)
+    {
+        EXPECT_EQ(Send("ground/Commands")->RefusalReason(), "");
+    }
+    EXPECT_EQ(Send("ground/Commands")->RefusalReason(), "the queue `Commands` is full");
+}
+
 TEST_F(ReceiptTest, SaysRefusedWhenTheOutboxIsFull)
 {
     Cut();
@@ -113,6 +129,7 @@ TEST_F(ReceiptTest, SaysRefusedWhenTheOutboxIsFull)
         EXPECT_EQ(Send()->Outcome(), QueueOutcome::Pending);
     }
     EXPECT_EQ(Send()->Outcome(), QueueOutcome::Refused);
+    EXPECT_EQ(Send()->RefusalReason(), "outbox full by count");
 }
 
 TEST_F(ReceiptTest, SaysRefusedForAnUnknownNode)

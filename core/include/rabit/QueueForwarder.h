@@ -29,8 +29,8 @@ public:
     // The result is what AddMessageToQueue returns: false if the message is refused.
     //
     // The receipt, if it is not null, gets a Begin for each queue that the message is meant for, refusals
-    // included. A refusal that makes Forward return false is a Refuse. Any other outcome is a Settle, at any
-    // later time and on any thread. Nothing is told to the receipt if Forward throws.
+    // included. A refusal that makes Forward return false is a Refuse with its reason. Any other outcome is a
+    // Settle, at any later time and on any thread. Nothing is told to the receipt if Forward throws.
     virtual bool Forward(const std::string &queueName, const std::shared_ptr<RabitMessage> &message,
                          const std::shared_ptr<RabitQueueReceipt> &receipt) = 0;
 

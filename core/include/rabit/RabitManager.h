@@ -176,8 +176,8 @@ public:
                        [&](RabitHandler handler)
                        { return queue->ConnectSomethingDequeued(std::move(handler)); });
     }
-    // See RabitWorkspace. False: no such queue, or it is full. A receipt tells the outcome of the message
-    // later (RabitQueueReceipt).
+    // See RabitWorkspace. False: no such queue, or it is full. A receipt tells the reason of a refusal at
+    // once, and the outcome of the message later (RabitQueueReceipt).
     template <typename T>
     bool AddMessageToQueue(std::string name, T msg, std::shared_ptr<RabitQueueReceipt> receipt = nullptr)
     {

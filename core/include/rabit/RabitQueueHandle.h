@@ -26,6 +26,8 @@ enum class QueueAddResult
 // For logs: `ok`, `full`, `unknown queue`, `wrong type`.
 const char *ToString(QueueAddResult result);
 std::ostream &operator<<(std::ostream &stream, QueueAddResult result);
+// Returns why the queue of that name did not take a message, for RabitQueueReceipt::Refuse.
+std::string RefusalReasonOf(QueueAddResult result, const std::string &queue);
 
 // A queue of any kind and element type, as a workspace keeps it. All methods may be called from any thread,
 // except that adding to a RabitNonBlockingSPSCQueue is for its producer alone.

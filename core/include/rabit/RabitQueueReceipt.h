@@ -6,6 +6,7 @@
 #include <iosfwd>
 #include <memory>
 #include <mutex>
+#include <string>
 
 namespace Rabit
 {
@@ -54,6 +55,9 @@ public:
     // doubt, else Expired if any expired, else Refused.
     QueueOutcome Outcome() const;
     Counts GetCounts() const;
+    // Why a message was refused at the call, in words: of several, the last one that was. Empty if none was,
+    // or if its QueueForwarder tells none.
+    std::string RefusalReason() const;
 
     // Calls the handler whenever no message is pending any more and at least one got its outcome since the
     // handlers were last called. Messages refused at the call do not count. The handler runs with no lock
@@ -69,8 +73,8 @@ public:
     void Begin(std::uint32_t messages = 1);
     // One message came to this outcome. Throws std::invalid_argument if the outcome is Pending.
     void Settle(QueueOutcome outcome);
-    // One message is refused at the call: AddMessageToQueue will return false.
-    void Refuse();
+    // One message is refused at the call, for that reason: AddMessageToQueue will return false.
+    void Refuse(std::string reason = "");
     // Between Hold and Release the outcome is Pending, and no handler is called. Used while one message
     // goes to several queues, as further Begins may follow.
     void Hold();
@@ -84,6 +88,7 @@ private:
     Counts _counts;
     std::uint32_t _holds = 0;
     bool _news = false;  // a message was settled since the handlers were called
+    std::string _refusalReason;
     RabitEvent _known{_mutex};
 };
 

@@ -148,7 +148,7 @@ public:
     // once, later ones together, at most once a minute. This includes messages added to a registered queue
     // directly. GetListOfQueues and GetListOfUnknownQueues return the counts.
     //
-    // The receipt, if there is one, tells the outcome of the message, also a refusal; see
+    // The receipt, if there is one, tells the outcome of the message, also a refusal and its reason; see
     // RabitQueueReceipt. If this throws, the receipt is not changed.
     template <typename T>
     bool AddMessageToQueue(std::string name, T msg, std::shared_ptr<RabitQueueReceipt> receipt = nullptr);
@@ -247,7 +247,9 @@ private:
     bool ForwardMessage(const std::string &name, const std::shared_ptr<RabitMessage> &message,
                         const std::shared_ptr<RabitQueueReceipt> &receipt);
     bool RefuseUnknown(const std::string &name, const std::shared_ptr<RabitQueueReceipt> &receipt);
-    static bool TellReceipt(const std::shared_ptr<RabitQueueReceipt> &receipt, bool delivered);
+    // Return true and false.
+    static bool TellDelivered(const std::shared_ptr<RabitQueueReceipt> &receipt);
+    static bool TellRefused(const std::shared_ptr<RabitQueueReceipt> &receipt, std::string reason);
 
     template <typename QueueT>
     static std::shared_ptr<RabitQueueHandle> MakeQueueHandle(std::shared_ptr<QueueT> queue)
@@ -303,13 +305,15 @@ bool RabitWorkspace::AddMessageToQueue(std::string name, T msg, std::shared_ptr<
     {
         if (!msg)
         {
-            return TellReceipt(receipt, false);
+            return TellRefused(receipt, "the message is a null pointer");
         }
         if (RabitManagerTrace::Current() != nullptr)
         {
             const RabitManagerTrace::Pause trace;
             const std::optional<bool> known = trace->Adding(name, *msg);
-            const bool accepted = known ? TellReceipt(receipt, *known) : AddUntraced(name, msg, receipt);
+            const bool accepted = !known   ? AddUntraced(name, msg, receipt)
+                                  : *known ? TellDelivered(receipt)
+                                           : TellRefused(receipt, "it was refused in the recording");
             trace->Added(accepted);
             return accepted;
         }
@@ -329,7 +333,9 @@ bool RabitWorkspace::AddUntraced(const std::string &name, T &msg,
         {
             throw QueueTypeException(name, handle->ElementType(), typeid(T));
         }
-        return TellReceipt(receipt, result == QueueAddResult::Ok);
+        return result == QueueAddResult::Ok
+                   ? TellDelivered(receipt)
+                   : TellRefused(receipt, receipt ? RefusalReasonOf(result, name) : std::string());
     }
     if constexpr (std::is_convertible_v<T, std::shared_ptr<RabitMessage>>)
     {

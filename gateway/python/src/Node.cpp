@@ -16,7 +16,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "ReasonTap.h"
 #include "Seconds.h"
 #include "Values.h"
 #include "names/NamePattern.h"
@@ -181,7 +180,6 @@ void Node::Start()
     {
         backfill = std::make_unique<BackfillManager>(config, recorder.get(), parts.Workspace);
     }
-    config.Tap = std::make_shared<ReasonTap>(config.Tap);
     auto gateway =
         std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport), parts.Workspace);
     std::promise<void> ready;
@@ -428,16 +426,7 @@ std::shared_ptr<Receipt> Node::Send(const std::string &address, py::handle value
     }
     auto receipt = std::make_shared<Receipt>(_nextReceipt++, address, _outcomes);
     const py::gil_scoped_release released;
-    ReasonTap::Last().clear();
-    if (!parts.Workspace.AddMessageToQueue(address, message, receipt->Local()))
-    {
-        receipt->Reason = ReasonTap::Last();
-        if (receipt->Reason.empty())
-        {
-            const auto queue = parts.Workspace.FindQueue(address);
-            receipt->Reason = queue ? "the queue is full" : "there is no queue `" + address + "`";
-        }
-    }
+    parts.Workspace.AddMessageToQueue(address, message, receipt->Local());
     return receipt;
 }
 

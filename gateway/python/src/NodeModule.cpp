@@ -159,7 +159,7 @@ void DefineNode(py::module_ &module)
         .def_property_readonly("address", &Receipt::Address)
         .def_property_readonly("outcome",
                                [](const Receipt &self) { return static_cast<int>(self.Outcome()); })
-        .def_readonly("reason", &Receipt::Reason)
+        .def_property_readonly("reason", &Receipt::Reason)
         .def_property_readonly("counts",
                                [](const Receipt &self)
                                {

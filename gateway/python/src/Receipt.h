@@ -43,7 +43,7 @@ public:
     QueueOutcome Outcome() const { return _receipt->Outcome(); }
     RabitQueueReceipt::Counts Counts() const { return _receipt->GetCounts(); }
     // Why it was refused at the call; empty if it was not.
-    std::string Reason{};
+    std::string Reason() const { return _receipt->RefusalReason(); }
     // An event loop waits: its node's Outcomes is told. True if the outcome is known already.
     bool TellLoop();
     // Needs the GIL. False after so many seconds.

@@ -54,6 +54,7 @@ def test_wrong_use_names_what_is_wrong(idl, one_network):
         receipt = node.send("nobody/Commands", idl.Uav.Goto())
         assert receipt.wait(1) is rabit.Outcome.REFUSED and "nobody" in receipt.reason
         assert node.send("Nowhere", idl.Uav.Goto()).reason == "there is no queue `Nowhere`"
+        assert node.send("planner/Comands", idl.Uav.Goto()).reason == "there is no queue `Comands`"
         with pytest.raises(TimeoutError):
             node.queue("Commands").get(timeout=0.01)
     with pytest.raises(RuntimeError, match="was stopped"):
