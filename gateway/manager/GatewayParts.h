@@ -26,6 +26,7 @@
 #include "presence/Whereabouts.h"
 #include "queues/LinkDriver.h"
 #include "queues/OutgoingQueues.h"
+#include "report/FullQueues.h"
 #include "report/HandlerWatch.h"
 #include "report/LinkStrains.h"
 #include "report/OwnLog.h"
@@ -135,6 +136,7 @@ private:
     ForeignTopics _foreign{_config, _source, Handlers()};
     std::shared_ptr<Gateway::Fleet> _fleet;
     LinkStrains _strains;
+    FullQueues _fullQueues;
     Exploration &_exploration;
     std::optional<Duration> _exploredAt;
     const std::string _logName = LogNameOf(_config, _workspace);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "manager/GatewayParts.h"
 #include "names/NamePattern.h"
@@ -76,6 +77,10 @@ void GatewayManager::Parts::PostFleet(Duration now)
     ReportAir(fleet, now);
     FleetReport::AddNameProblems(*_peers, fleet);
     AddProblems(now, fleet);
+    for (Gateway::Problem &problem : _fullQueues.Look(_workspace.GetListOfQueues(), fleet, *_peers, now))
+    {
+        fleet.problems.push_back(std::move(problem));
+    }
     _foreign.Report(now, fleet);
     OtherGateways::AddSharedNodes(_workspace, _config.Name, fleet);
     const std::vector<LinkStrain> strains = _strains.Look(fleet, *_peers, now);

@@ -186,6 +186,31 @@ TEST_F(QueueTest, AFullRemoteQueueHoldsTheStreamBackWithoutLoss)
     EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").outbox, 0u);
 }
 
+TEST_F(QueueTest, AQueueThatNobodyReadsIsAProblemOfBothSidesUntilItIsRead)
+{
+    for (std::uint32_t i = 1; i <= 2500; ++i)
+    {
+        SendGoto(i);
+        fleet.RunFor(1ms);
+    }
+    fleet.RunFor(8s);
+    EXPECT_THAT(
+        uav.Problems(),
+        HasSubstr("queue MissionControl: it is full, and its manager takes no messages from it: those "
+                  "of `ground` wait"));
+    EXPECT_THAT(
+        ground.Problems(),
+        HasSubstr("send uav1/MissionControl: no more messages may wait, and they are refused: a queue "
+                  "of uav1 is full"));
+    while (!Take(mission).empty())
+    {
+        fleet.RunFor(1s);
+    }
+    fleet.RunFor(1s);
+    EXPECT_THAT(uav.Problems(), Not(HasSubstr("queue MissionControl")));
+    EXPECT_THAT(ground.Problems(), Not(HasSubstr("send uav1")));
+}
+
 TEST_F(QueueTest, AFullQueueHoldsBackOnlyTheNodesWhoseMessagesWait)
 {
     GatewayConfig config = GroundConfig();
