@@ -222,6 +222,7 @@ void GatewayManager::Parts::AddProblems(Duration now, Gateway::Fleet &fleet) con
     }
     for (const auto &problems : {_config.Tap ? _config.Tap->Problems() : std::vector<Gateway::Problem>(),
                                  Diagnosis::OfSubscriptions(_subscriptions, *_peers, now - _openedAt, now),
+                                 Diagnosis::OfLostNodes(_subscriptions.Rules(), _config.Send, fleet, *_peers),
                                  _outgoing->Problems(), _links.Problems(), _slow.Problems(now),
                                  ManagerTroubles::ProblemsOf(_workspace.GetListOfTroubledManagers())})
     {

@@ -266,7 +266,7 @@ PeerTable::Change PeerTable::OnLeft(const std::string &node, std::uint64_t incar
     }
     else
     {
-        change.State = SetState(found->second, NodeState::LOST, "left");
+        change.State = SetState(found->second, NodeState::LOST, Left);
     }
     return change;
 }

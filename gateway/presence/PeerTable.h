@@ -115,6 +115,9 @@ public:
         Duration TwinSince{0};  // when the last of them came
     };
 
+    // Peer::Reason of a node that is LOST since it said goodbye.
+    static constexpr const char *Left = "left";
+
     // True if a node must be remembered although it is gone.
     using IsNeeded = std::function<bool(const std::string &node)>;
 

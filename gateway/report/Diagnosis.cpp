@@ -1,5 +1,6 @@
 #include "report/Diagnosis.h"
 
+#include <rabit/gateway/Fleet.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
@@ -102,7 +103,60 @@ std::string WhyNoData(const Wanted &wanted, const PeerTable::Peer &peer, std::ch
            "` yet, or its samples do not get through";
 }
 
+// Returns the messages that this node has of a LOST node, or would have.
+std::vector<std::string> MessagesOf(const PeerTable::Peer &peer, const std::deque<SubscribeRule> &subscribe)
+{
+    std::vector<std::string> messages;
+    for (const SubscribeRule &rule : subscribe)
+    {
+        const bool isNamed = std::find(rule.From.begin(), rule.From.end(), peer.Node) != rule.From.end();
+        const bool isMeant = peer.Reason != PeerTable::Left && MatchesAny(rule.From, peer.Node);
+        const bool isFromAll = std::find(rule.From.begin(), rule.From.end(), "*") != rule.From.end();
+        const bool lacks = isFromAll && peer.Offers && OfferOf(rule.Message, peer) == nullptr;
+        if (isNamed || (isMeant && !lacks))
+        {
+            messages.push_back(rule.Message);
+        }
+    }
+    return messages;
+}
+
 }  // namespace
+
+std::vector<Gateway::Problem> OfLostNodes(const std::deque<SubscribeRule> &subscribe,
+                                          const std::vector<SendRule> &send, const Gateway::Fleet &fleet,
+                                          const PeersOverPaths &peers)
+{
+    std::vector<Gateway::Problem> problems;
+    for (const PeerTable::Peer *peer : peers.Heard())
+    {
+        if (peer->State != Gateway::NodeState::LOST)
+        {
+            continue;
+        }
+        std::string wants;
+        const std::vector<std::string> messages = MessagesOf(*peer, subscribe);
+        if (!messages.empty())
+        {
+            wants += "; this node subscribes to its " + ListedNames(messages);
+        }
+        const Gateway::NodeStatus *const row = Gateway::FindNode(fleet, peer->Node);
+        if (row != nullptr && row->outbox > 0)
+        {
+            wants += "; messages for it wait";
+        }
+        else if (std::any_of(send.begin(), send.end(),
+                             [peer](const SendRule &rule) { return rule.To == peer->Node; }))
+        {
+            wants += "; this node sends to it";
+        }
+        if (!wants.empty())
+        {
+            problems.push_back({"node " + peer->Node, peer->Node, "it is LOST: " + peer->Reason + wants});
+        }
+    }
+    return problems;
+}
 
 std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeersOverPaths &peers,
                                              std::chrono::nanoseconds sinceStart,
@@ -123,7 +177,7 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeersOv
         anyNode = true;
         if (peer->State == Gateway::NodeState::LOST)
         {
-            continue;  // its own row says so
+            continue;  // OfLostNodes says so
         }
         if (mayLack && peer->Offers && OfferOf(wanted.Rule->Message, *peer) == nullptr)
         {

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <string>
@@ -43,6 +44,13 @@ std::vector<Gateway::Problem> OfSubscription(const Wanted &wanted, const PeersOv
 std::vector<Gateway::Problem> OfSubscriptions(const Subscriptions &subscriptions, const PeersOverPaths &peers,
                                               std::chrono::nanoseconds sinceStart,
                                               std::chrono::nanoseconds now);
+
+// Returns the problem of each node that was heard, is LOST, and that this node wants: one that `subscribe`
+// covers, that `send` names, or for which messages wait (`outbox` of its row in `fleet`). A node that said
+// goodbye is wanted only by its name or for messages that wait, not by a pattern.
+std::vector<Gateway::Problem> OfLostNodes(const std::deque<SubscribeRule> &subscribe,
+                                          const std::vector<SendRule> &send, const Gateway::Fleet &fleet,
+                                          const PeersOverPaths &peers);
 
 }  // namespace Diagnosis
 }  // namespace Rabit

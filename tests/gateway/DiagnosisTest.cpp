@@ -206,6 +206,65 @@ TEST_F(DiagnosisTest, ALostNodeIsNoProblemOfTheSubscription)
     EXPECT_EQ(Problem(60s), "0 problems");
 }
 
+// Returns "subject: reason" of each problem of LOST nodes, in lines.
+std::string LostNodes(const std::deque<SubscribeRule> &subscribe, const PeerTable &peers,
+                      const std::vector<SendRule> &send = {}, std::uint32_t waiting = 0)
+{
+    Gateway::Fleet fleet;
+    Gateway::NodeStatus &row = fleet.nodes.emplace_back();
+    row.node = "uav1";
+    row.outbox = waiting;
+    std::string lines;
+    for (const Gateway::Problem &problem : Diagnosis::OfLostNodes(subscribe, send, fleet, peers))
+    {
+        EXPECT_EQ(problem.node, "uav1");
+        lines += problem.subject + ": " + problem.reason + "\n";
+    }
+    return lines;
+}
+
+TEST_F(DiagnosisTest, ALostNodeIsAProblemOfANodeThatWantsIt)
+{
+    Offer("Pose", "Uav::Pose", "telemetry", 11);
+    Hear();
+    SubscribeRule state = rule;
+    state.Message = "MissionState";
+    SubscribeRule other = rule;
+    other.From = {"uav2"};
+    const std::deque<SubscribeRule> rules{rule, state, other};
+    const std::string lost = "node uav1: it is LOST: no beat within its limit of 3.5 s";
+    EXPECT_EQ(LostNodes(rules, peers), "");
+    peers.Advance(60s);
+    EXPECT_EQ(LostNodes(rules, peers), lost + "; this node subscribes to its `Pose`, `MissionState`\n");
+    EXPECT_EQ(LostNodes({other}, peers), "");
+    EXPECT_EQ(LostNodes({other}, peers, {{.To = "*"}, {.To = "uav1"}}), lost + "; this node sends to it\n");
+    EXPECT_EQ(LostNodes({other}, peers, {}, 1), lost + "; messages for it wait\n");
+}
+
+TEST_F(DiagnosisTest, ALostNodeThatHadNoSuchMessageIsNotMissedByOneThatTakesItFromEverybody)
+{
+    rule.From = {"*"};
+    rule.Message = "Health";
+    Offer("Pose", "Uav::Pose", "telemetry", 11);
+    Hear();
+    Gateway::Announcement health;
+    health.publishes.emplace_back().message = "Health";
+    peers.OnBeat(BeatOf("uav2", &health));
+    peers.Advance(3s);
+    peers.OnLeft("uav2", 5);
+    peers.Advance(60s);
+    EXPECT_EQ(LostNodes({rule}, peers), "");
+}
+
+TEST_F(DiagnosisTest, ANodeThatSaidGoodbyeIsAProblemOnlyIfItIsWantedByName)
+{
+    Hear();
+    peers.OnLeft("uav1", 5);
+    EXPECT_EQ(LostNodes({rule}, peers), "");
+    rule.From = {"uav2", "uav1"};
+    EXPECT_EQ(LostNodes({rule}, peers), "node uav1: it is LOST: left; this node subscribes to its `Pose`\n");
+}
+
 TEST_F(DiagnosisTest, WhyAQueueDoesNotTakeAMessage)
 {
     Accept("MissionControl", "Uav::Goto", 21);

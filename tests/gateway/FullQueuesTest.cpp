@@ -74,7 +74,7 @@ protected:
     std::vector<std::string> LookAfter(Moment time)
     {
         now += time;
-        peers.Tick(now);
+        peers.Advance(now);
         std::vector<std::string> rows;
         for (const Gateway::Problem &problem : full.Look(queues, fleet, peers, now))
         {

@@ -18,6 +18,7 @@ namespace
 {
 
 using namespace std::chrono_literals;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -76,6 +77,27 @@ TEST_F(ToolTest, SeesTheNodesWithTheirRoundTrips)
     {
         EXPECT_GT(status.round_trip_s, 0.0) << status.node;
     }
+}
+
+TEST_F(ToolTest, ThatJoinsLaterLearnsFromTheOthersWhichNodeIsMissing)
+{
+    PostState();
+    fleet.Kill("uav1");
+    fleet.RunFor(10s);
+    EXPECT_THAT(ground.Problems(),
+                HasSubstr("node uav1: it is LOST: no beat within its limit of 3.5 s; this node subscribes to "
+                          "its `Pose`, `MissionState`"));
+    GatewayConfig config = ToolConfig();
+    config.ProblemsOf = {"*"};
+    SimulatedNode &tool = fleet.Add(config);
+    fleet.RunFor(5s);
+    EXPECT_EQ(tool.StateOf("uav1"), "") << "it was never heard there";
+    const Gateway::Fleet seen = tool.Fleet();
+    ASSERT_EQ(seen.nodes.size(), 1u);
+    EXPECT_THAT(seen.nodes[0].problem_texts, Contains(HasSubstr("node uav1: it is LOST")));
+    fleet.Add(AircraftConfig("uav1"), 1.4e9 + 60).AddIdleManager("MissionControl");
+    fleet.RunFor(5s);
+    EXPECT_THAT(ground.Problems(), Not(HasSubstr("LOST")));
 }
 
 TEST_F(ToolTest, IsNotListedByNodesNorByOtherTools)
