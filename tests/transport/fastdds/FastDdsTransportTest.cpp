@@ -4,6 +4,10 @@
 #include <memory>
 #include <string>
 
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
 #include "../conformance/NetworkSettings.h"
 #include "../conformance/ProcessHarness.h"
 #include "../conformance/Recorder.h"
@@ -55,6 +59,32 @@ TEST_F(FastDdsTransportTest, AProfilesFileIsTheBaseOfTheSettings)
     settings.Interfaces = {"radio99"};
     const auto uav = Backend().Open(settings, {});
     EXPECT_TRUE(Net().Until([&] { return peers.Count(Kind::Appeared, "uav1", 1) == 1; }));
+}
+
+TEST_F(FastDdsTransportTest, ASessionDoesNotBeginDeafIfAnotherProgramHasThePortOfDiscovery)
+{
+    const auto settings = Settings("uav1");
+    const int port = 7400 + 250 * settings.Domain;
+    const int holder = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    ASSERT_EQ(::bind(holder, reinterpret_cast<const sockaddr *>(&address), sizeof address), 0);
+    try
+    {
+        Backend().Open(settings, {});
+        ADD_FAILURE() << "it began";
+    }
+    catch (const TransportError &error)
+    {
+        EXPECT_EQ(error.Setting(), "domain");
+        EXPECT_NE(std::string(error.what()).find("UDP port " + std::to_string(port) + ","), std::string::npos)
+            << error.what();
+        EXPECT_NE(std::string(error.what()).find("another program has it"), std::string::npos)
+            << error.what();
+    }
+    ::close(holder);
+    EXPECT_NO_THROW(Backend().Open(settings, {}));
 }
 
 TEST_F(FastDdsTransportTest, SharedMemoryDelivers)

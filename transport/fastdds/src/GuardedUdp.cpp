@@ -113,6 +113,18 @@ public:
 
     TransportDescriptorInterface *get_configuration() override { return &_descriptor; }
 
+    // The vendor takes another port for single addresses, and goes on without that of a group.
+    bool OpenInputChannel(const rtps::Locator_t &locator, TransportReceiverInterface *receiver,
+                          std::uint32_t largest) override
+    {
+        const bool isOpen = ChainedUdp::OpenInputChannel(locator, receiver, largest);
+        if (!isOpen && IsGroup(locator))
+        {
+            _descriptor.Chosen().OnDeaf(locator.port);
+        }
+        return isOpen;
+    }
+
     bool MaySendTo(const rtps::Locator_t &remote) const override
     {
         const std::uint32_t port = _descriptor.Chosen().GroupPort;

@@ -48,6 +48,9 @@ public:
         // Called, on the receiving thread, for each datagram of which the guard kept something back that an
         // honest peer does not send.
         std::function<void()> OnDropped{};
+        // Called, on the thread that makes the participant, if no datagrams to groups can be received at this
+        // port.
+        std::function<void(std::uint32_t port)> OnDeaf{};
         // Called, on any thread, each time that a datagram is given to a socket, with the numbers to count.
         std::function<void(bool samples, std::size_t datagrams, std::size_t bytes)> OnSent{};
         // Called, on the receiving thread, when the participant should be announced to a peer that has not

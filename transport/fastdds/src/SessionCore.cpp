@@ -1,9 +1,16 @@
 #include "SessionCore.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <iterator>
 #include <random>
+#include <string>
+#include <system_error>
 #include <utility>
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include "EndpointSettings.h"
 #include "KeyAddressees.h"
@@ -56,6 +63,29 @@ PeerPlace PlaceOf(const ParticipantNews &peer)
     return place;
 }
 
+// Why datagrams to groups cannot be received at that port, as far as an attempt to listen there tells.
+std::string WhyDeaf(int domain, std::uint32_t port)
+{
+    std::string why;
+    if (const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0); socket >= 0)
+    {
+        const int yes = 1;
+        ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_port = htons(static_cast<std::uint16_t>(port));
+        if (::bind(socket, reinterpret_cast<const sockaddr *>(&address), sizeof address) != 0)
+        {
+            why = errno == EADDRINUSE ? ": another program has it"
+                                      : ": " + std::generic_category().message(errno);
+        }
+        ::close(socket);
+    }
+    return "Fast DDS cannot join domain " + std::to_string(domain) + ": it cannot listen at UDP port " +
+           std::to_string(port) + ", by which nodes find each other" + why +
+           "; end the program that has it (ss -ulpn), or choose another domain";
+}
+
 RemoteEndpoint Described(const EndpointNews &news, const std::string &node)
 {
     return {.Id = ToWriterId(news.Guid),
@@ -84,7 +114,8 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
       _keys(settings.Security ? std::make_shared<KeyThread>(context.Turns, settings.MaxDatagram) : nullptr)
 {
     auto attributes = MakeParticipantAttributes(settings, Log(),
-                                                {.Announce = [this] { Announce(); },
+                                                {.OnDeaf = [this](auto port) { _deafAt = port; },
+                                                 .Announce = [this] { Announce(); },
                                                  .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
                                                  .Keys = _keys,
                                                  .Meeting = _meeting,
@@ -107,6 +138,11 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                              (settings.Security ? ", or it does not accept the keys" : ""));
     }
     _participant.load()->enable();
+    if (const std::uint32_t port = _deafAt; port != 0)
+    {
+        Leave();
+        throw TransportError(WhyDeaf(settings.Domain, port), "domain");
+    }
     if (settings.Security)
     {
         _keys->TellSettled([this](bool isSettled) { KeyAddressees::SetPeriods(*_participant, isSettled); });
@@ -118,6 +154,11 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
 }
 
 SessionCore::~SessionCore()
+{
+    Leave();
+}
+
+void SessionCore::Leave()
 {
     Close();
     _meeting->Stop();

@@ -3,6 +3,7 @@
 #include <rabit/transport/Transport.h>
 
 #include <atomic>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -47,6 +48,8 @@ private:
     void OnEndpoint(const EndpointNews &news) override;
     void onParticipantAuthentication(rtps::RTPSParticipant *participant,
                                      rtps::ParticipantAuthenticationInfo &&info) override;
+    // Leaves the network with a participant that may be incomplete.
+    void Leave();
     // Called on a thread of the network, also before the participant is complete.
     void Announce();
     void PeerAppeared(const ParticipantNews &peer);
@@ -77,6 +80,7 @@ private:
     const ProcessNumber<SessionCore> _number{0, 1};
     AnnouncementTimer _announceTimer;
     std::atomic<rtps::RTPSParticipant *> _participant = nullptr;
+    std::atomic<std::uint32_t> _deafAt{0};  // port of a group at which the vendor could not listen; 0: none
 };
 
 }  // namespace Rabit::FastDds
