@@ -9,6 +9,7 @@
 
 #include "clocks/GpsTime.h"
 #include "names/ForeignNames.h"
+#include "names/TypeDefinition.h"
 
 namespace Rabit
 {
@@ -181,7 +182,7 @@ ForeignReader::Duration ForeignReader::PostedAt(const SampleInfo &info, Duration
 
 void ForeignReader::Keep(SampleBytes bytes)
 {
-    AcceptedQueue::Decoded decoded = _queue.Decode(_rule.Type, bytes);
+    AcceptedQueue::Decoded decoded = _queue.Decode(LinkTypeName(_type), bytes);
     if (!decoded.Message)
     {
         CountUndecodable(bytes.size());

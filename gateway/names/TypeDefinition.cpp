@@ -3,7 +3,10 @@
 #include <rabit/base/Fnv1a.h>
 
 #include <cctype>
+#include <charconv>
+#include <cinttypes>
 #include <cstddef>
+#include <cstdio>
 #include <map>
 #include <string>
 
@@ -50,6 +53,29 @@ std::string Normalized(const std::string &idl)
     return normalized;
 }
 
+struct KnownDefinition
+{
+    std::uint64_t Hash = 0;
+    std::string LinkName;
+};
+
+KnownDefinition KnownDefinitionOf(const MessageType &type)
+{
+    const std::uint64_t hash = DefinitionHash(type.Name(), type.IdlText());
+    char digits[17];
+    std::snprintf(digits, sizeof digits, "%016" PRIx64, hash);
+    return {hash, type.Name() + "@" + digits};
+}
+
+// Cached, since it is needed for every message that is sent. Types live as long as the process, so no entry
+// goes stale.
+const KnownDefinition &FindDefinition(const MessageType &type)
+{
+    static thread_local std::map<const MessageType *, KnownDefinition> known;
+    const auto found = known.find(&type);
+    return found != known.end() ? found->second : known.emplace(&type, KnownDefinitionOf(type)).first->second;
+}
+
 }  // namespace
 
 std::uint64_t DefinitionHash(const std::string &name, const std::string &idlText)
@@ -59,13 +85,23 @@ std::uint64_t DefinitionHash(const std::string &name, const std::string &idlText
 
 std::uint64_t DefinitionHash(const MessageType &type)
 {
-    // Cached, since it is called for every message that is sent. Types live as long as the process, so no
-    // entry goes stale.
-    static thread_local std::map<const MessageType *, std::uint64_t> hashes;
-    const auto found = hashes.find(&type);
-    return found != hashes.end()
-               ? found->second
-               : hashes.emplace(&type, DefinitionHash(type.Name(), type.IdlText())).first->second;
+    return FindDefinition(type).Hash;
+}
+
+const std::string &LinkTypeName(const MessageType &type)
+{
+    return FindDefinition(type).LinkName;
+}
+
+LinkTypeParts SplitLinkTypeName(std::string_view name)
+{
+    const std::size_t at = name.rfind('@');
+    LinkTypeParts parts{.Type = name.substr(0, at)};
+    if (at != std::string_view::npos)
+    {
+        std::from_chars(name.data() + at + 1, name.data() + name.size(), parts.Definition, 16);
+    }
+    return parts;
 }
 
 }  // namespace Rabit

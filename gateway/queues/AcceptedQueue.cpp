@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "names/NamePattern.h"
+#include "names/TypeDefinition.h"
 
 namespace Rabit
 {
@@ -15,9 +16,12 @@ AcceptedQueue::AcceptedQueue(const AcceptRule &rule, RabitWorkspace &workspace, 
     : _rule(rule), _workspace(workspace), _gate(std::make_shared<Gate>())
 {
     _gate->Wake = std::move(wake);
-    for (const std::string &type : rule.Types)
+    for (const std::string &name : rule.Types)
     {
-        _types[type] = MessageTypeRegistry::Find(type);
+        if (const MessageType *const type = MessageTypeRegistry::Find(name))
+        {
+            _types[LinkTypeName(*type)] = type;
+        }
     }
 }
 

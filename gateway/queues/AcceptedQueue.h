@@ -45,8 +45,9 @@ public:
 
     // True if that node may put messages into the queue. Any thread, at any time.
     bool AcceptsFrom(std::string_view node) const;
+    // `type` is a LinkTypeName (names/TypeDefinition.h): another definition of a type is another type.
     bool AcceptsType(std::string_view type) const { return _types.find(type) != _types.end(); }
-    // Any thread, at any time.
+    // Likewise. Any thread, at any time.
     Decoded Decode(std::string_view type, std::span<const std::uint8_t> payload) const;
 
     // Adds a message without telling the queue's handlers: once no lock is held, call NotifyEnqueued of the
@@ -73,7 +74,8 @@ private:
 
     AcceptRule _rule;
     RabitWorkspace &_workspace;
-    std::map<std::string, const MessageType *, std::less<>> _types;  // unchanged after construction
+    // Those of the rule that are registered, by their LinkTypeNames; unchanged after construction.
+    std::map<std::string, const MessageType *, std::less<>> _types;
     std::shared_ptr<Queue> _queue;
     // Of _queue. The workspace and the manager own it, so it expires once both have given the queue up.
     std::weak_ptr<RabitQueueHandle> _handle;

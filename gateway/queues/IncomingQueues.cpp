@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "names/TypeDefinition.h"
+
 namespace Rabit
 {
 
@@ -62,6 +64,10 @@ LocalQueueResult IncomingQueues::Deliver(const LinkDelivery &delivery)
     {
         result = accepted.Deliver(accepted.Decode(delivery.Type, delivery.Payload), delivery.Redelivered);
     }
+    else if (!accepted.AcceptsType(delivery.Type))
+    {
+        result = LocalQueueResult::WrongType;  // it need not wait for room
+    }
     else if (accepted.Room() > 0)
     {
         _undecoded.push_back({.Source = std::string(delivery.Source),
@@ -76,7 +82,8 @@ LocalQueueResult IncomingQueues::Deliver(const LinkDelivery &delivery)
     if (result == LocalQueueResult::Ok && _keepsReceived)
     {
         _received.push_back({std::string(delivery.Source), std::string(delivery.Queue),
-                             std::string(delivery.Type), LinkBytes::CopyOf(delivery.Payload)});
+                             std::string(SplitLinkTypeName(delivery.Type).Type),
+                             LinkBytes::CopyOf(delivery.Payload)});
     }
     if (result == LocalQueueResult::Ok &&
         std::find(_delivered.begin(), _delivered.end(), accepted.Local()) == _delivered.end())

@@ -37,7 +37,7 @@ public:
     // than to put it off.
     static constexpr std::size_t QuicklyDecoded = 4096;
 
-    // A message that was put off; SenderLife and Number as in LinkDelivery.
+    // A message that was put off; Type, SenderLife and Number as in LinkDelivery.
     struct Undecoded
     {
         std::string Source, Queue, Type;
@@ -50,7 +50,7 @@ public:
     // A message that was put into a queue, for a recorder.
     struct Received
     {
-        std::string Source, Queue, Type;
+        std::string Source, Queue, Type;  // the IDL name of its type
         LinkPayload Payload;
     };
 

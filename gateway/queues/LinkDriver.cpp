@@ -1,7 +1,9 @@
 #include "queues/LinkDriver.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "names/TypeDefinition.h"
 #include "queues/LinkStatus.h"
 #include "queues/SendOptions.h"
 #include "wire/LinkSampleCodec.h"
@@ -272,7 +274,7 @@ LinkRefusal LinkDriver::Enqueue(const std::string &node, const std::string &queu
     }
     if (_config.Tap && enqueued.Accepted())
     {
-        _config.Tap->Sent({node, queue, type, enqueued.Id, payload->View()});
+        _config.Tap->Sent({node, queue, SplitLinkTypeName(type).Type, enqueued.Id, payload->View()});
     }
     Tell(news);  // accepting a message may reveal that others have expired
     if (sooner)
@@ -302,6 +304,27 @@ LinkOptions LinkDriver::OptionsOf(std::string_view destination, std::string_view
         options.Expire = expiry->Expire;
     }
     return options;
+}
+
+void LinkDriver::OnRefusedThere(std::string_view destination, std::string_view queue, std::string_view type)
+{
+    auto refused = std::find_if(_refused.begin(), _refused.end(),
+                                [destination, queue](const Refused &known)
+                                { return known.Node == destination && known.Queue == queue; });
+    if (refused == _refused.end() && _refused.size() < MostRefused)
+    {
+        refused = _refused.insert(refused, {std::string(destination), std::string(queue), {}});
+    }
+    if (refused != _refused.end())
+    {
+        refused->Type = type;
+    }
+}
+
+std::vector<LinkDriver::Refused> LinkDriver::TakeRefusedThere()
+{
+    const std::lock_guard lock(_mutex);
+    return std::exchange(_refused, {});
 }
 
 void LinkDriver::OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,

@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -123,13 +124,21 @@ public:
     void HeardOf(const std::string &node, std::uint64_t incarnation);
 
     // Accepts a message for a queue of another node; the receipt (may be null), which has had its Begin, gets
-    // the outcome. If it is refused, the receipt gets nothing. Any thread.
+    // the outcome. If it is refused, the receipt gets nothing. `type` is a LinkTypeName. Any thread.
     LinkRefusal Enqueue(const std::string &node, const std::string &queue, const std::string &type,
                         const LinkPayload &payload, const Receipt &receipt);
 
     // Has messages for a queue of nodes that fit the pattern expire after that time, whatever the
     // configuration says, on links that are not in use yet. The last call that fits holds. Any thread.
     void SetExpiry(const std::string &node, const std::string &queue, std::chrono::milliseconds expire);
+
+    // Takes the links on which an accepted message was refused at the other node since the last call, each
+    // once, with the LinkTypeName of the newest such message. Any thread.
+    struct Refused
+    {
+        std::string Node, Queue, Type;
+    };
+    std::vector<Refused> TakeRefusedThere();
 
     // True if messages for that node wait here.
     bool HasPending(const std::string &node) const;
@@ -148,6 +157,7 @@ private:
     void Send(const LinkFrame &frame, std::string_view queue) override;
     bool SendsAcksAlone(std::string_view destination) const override;
     LinkOptions OptionsOf(std::string_view destination, std::string_view queue) const override;
+    void OnRefusedThere(std::string_view destination, std::string_view queue, std::string_view type) override;
     void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,
                    LinkOutcome outcome) override;
 
@@ -204,6 +214,9 @@ private:
     // The same for the tap: received messages and outcomes, reported to it before all others.
     void TellTap();
 
+    // Links that are remembered for TakeRefusedThere.
+    static constexpr std::size_t MostRefused = 64;
+
     // Handler of the transport.
     void OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way);
     // Without the mutex: decodes the large messages that are complete, and has the links deliver them. For
@@ -243,6 +256,7 @@ private:
     std::unordered_map<std::uint64_t, Receipt> _receipts;  // of messages without an outcome, by their ids
     std::vector<std::pair<Receipt, QueueOutcome>> _settled;
     std::vector<Outcome> _outcomes;  // for the tap
+    std::vector<Refused> _refused;   // there; at most MostRefused
     LinkDatagrams _outbox;
     std::unique_ptr<LinkNode> _links;
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest

@@ -171,7 +171,7 @@ bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue
         TellRefused(node, queue, type, payload, answer.Reason);
         return Refuse(node, queue, answer.What, answer.Reason, receipt);
     }
-    const LinkRefusal refusal = _links.Enqueue(node, queue, type.Name(), payload, receipt);
+    const LinkRefusal refusal = _links.Enqueue(node, queue, LinkTypeName(type), payload, receipt);
     if (refusal != LinkRefusal::None)
     {
         const std::string reason(ToString(refusal));
@@ -198,8 +198,27 @@ bool OutgoingQueues::Refuse(const std::string &node, const std::string &queue, Q
     return RefuseAtCall(receipt, reason);
 }
 
-std::vector<Gateway::Problem> OutgoingQueues::Problems() const
+// The announcement that tells why may have come after the outcome.
+void OutgoingQueues::NoteRefusedThere()
 {
+    for (const LinkDriver::Refused &refused : _links.TakeRefusedThere())
+    {
+        const LinkTypeParts parts = SplitLinkTypeName(refused.Type);
+        const std::string type(parts.Type);
+        const RemoteQueues::Answer now = _remote.Ask(refused.Node, refused.Queue, type, parts.Definition);
+        const bool isKnown = now.What != QueueAcceptance::Accepted &&
+                             now.What != QueueAcceptance::UnknownNode &&
+                             now.What != QueueAcceptance::NotAnnounced;
+        _refusals.Tell(refused.Node, refused.Queue, now.What,
+                       "messages of `" + type + "` that waited for " + refused.Node + " were refused there" +
+                           (isKnown ? ": " + now.Reason : ""),
+                       _workspace.GetClock().Monotonic());
+    }
+}
+
+std::vector<Gateway::Problem> OutgoingQueues::Problems()
+{
+    NoteRefusedThere();
     return _refusals.Problems(_workspace.GetClock().Monotonic());
 }
 

@@ -44,7 +44,7 @@ public:
 
     // All links to other nodes, with the messages that were refused before they reached a link.
     std::vector<Gateway::LinkStatus> Status() const;
-    std::vector<Gateway::Problem> Problems() const;
+    std::vector<Gateway::Problem> Problems();
 
 private:
     using Receipt = std::shared_ptr<RabitQueueReceipt>;
@@ -55,6 +55,7 @@ private:
                    const LinkPayload &payload, const Receipt &receipt);
     bool ForwardToAll(const std::string &queue, const MessageType &type, const LinkPayload &payload,
                       const Receipt &receipt);
+    void NoteRefusedThere();
     void TellRefused(const std::string &node, const std::string &queue, const MessageType &type,
                      const LinkPayload &payload, const std::string &reason) const;
     // Returns false.

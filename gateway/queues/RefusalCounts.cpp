@@ -5,11 +5,8 @@
 namespace Rabit
 {
 
-void RefusalCounts::Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
-                        const std::string &reason, Duration now)
+RefusalCounts::Entry &RefusalCounts::EntryOf(const LinkName &link)
 {
-    const LinkName link{node, queue};
-    const std::lock_guard lock(_mutex);
     if (_entries.size() >= MostLinks && _entries.count(link) == 0)
     {
         const auto oldest =
@@ -18,10 +15,30 @@ void RefusalCounts::Add(const std::string &node, const std::string &queue, Queue
         SetReason(oldest->second, "");
         _entries.erase(oldest);
     }
-    Entry &entry = _entries[link];
+    return _entries[link];
+}
+
+void RefusalCounts::Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
+                        const std::string &reason, Duration now)
+{
+    const std::lock_guard lock(_mutex);
+    Entry &entry = EntryOf({node, queue});
     const bool aboutType =
         acceptance == QueueAcceptance::WrongType || acceptance == QueueAcceptance::OtherDefinition;
     ++(aboutType ? entry.Type : entry.Unknown);
+    SetProblem(entry, acceptance, reason, now);
+}
+
+void RefusalCounts::Tell(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
+                         const std::string &reason, Duration now)
+{
+    const std::lock_guard lock(_mutex);
+    SetProblem(EntryOf({node, queue}), acceptance, reason, now);
+}
+
+void RefusalCounts::SetProblem(Entry &entry, QueueAcceptance acceptance, const std::string &reason,
+                               Duration now)
+{
     SetReason(entry, reason);
     entry.OtherVersion = acceptance == QueueAcceptance::OtherDefinition;
     entry.Last = now;

@@ -17,7 +17,7 @@ namespace Rabit
 {
 
 // Counts the messages that were refused at the call, before they reached a link: by link, with the reason of
-// the last one. Thread-safe.
+// the last one, or of those that the other node refused. Thread-safe.
 class RefusalCounts
 {
 public:
@@ -33,6 +33,9 @@ public:
     // Counts one refused message. With an empty reason it is no problem.
     void Add(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
              const std::string &reason, Duration now);
+    // Tells of messages that were accepted, and refused at the other node. The links count them.
+    void Tell(const std::string &node, const std::string &queue, QueueAcceptance acceptance,
+              const std::string &reason, Duration now);
     // A message was accepted: whatever was wrong is over. Costs nothing while nothing is wrong.
     void Forgive(const std::string &node, const std::string &queue);
 
@@ -51,6 +54,9 @@ private:
         Duration Last{0};           // the time of the last one
     };
 
+    // With the mutex held. Makes the entry if there is none.
+    Entry &EntryOf(const LinkName &link);
+    void SetProblem(Entry &entry, QueueAcceptance acceptance, const std::string &reason, Duration now);
     void SetReason(Entry &entry, const std::string &reason);
 
     mutable std::mutex _mutex;

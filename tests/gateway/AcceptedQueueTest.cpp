@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "names/TypeDefinition.h"
 #include "uav.idl.h"
 
 namespace Rabit
@@ -38,7 +39,7 @@ protected:
         const MessageType &type = *MessageTypeRegistry::Of(message);
         std::vector<std::uint8_t> bytes(type.SerializedSize(message));
         type.Serialize(message, bytes);
-        return accepted.Decode("Uav::Goto", bytes);
+        return accepted.Decode(LinkTypeName(type), bytes);
     }
 
     void Take()
@@ -124,7 +125,8 @@ TEST_F(AcceptedQueueTest, TellsATypeThatIsNotTakenFromBytesThatAreNoMessage)
     AddLocal(1);
     const std::vector<std::uint8_t> rubbish{1, 2, 3};
     EXPECT_EQ(accepted.Deliver(accepted.Decode("Uav::Pose", rubbish), false), LocalQueueResult::WrongType);
-    EXPECT_EQ(accepted.Deliver(accepted.Decode("Uav::Goto", rubbish), false), LocalQueueResult::Undecodable);
+    EXPECT_EQ(accepted.Deliver(accepted.Decode(LinkTypeName(Uav::Goto::IdlType()), rubbish), false),
+              LocalQueueResult::Undecodable);
     EXPECT_EQ(local->NoMessagesInQueue(), 0);
 }
 

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "names/TypeDefinition.h"
 #include "uav.idl.h"
 
 namespace Rabit
@@ -15,7 +16,8 @@ namespace
 
 LinkDelivery DeliveryOf(std::string_view source, const std::vector<std::uint8_t> &payload)
 {
-    return {.Source = source, .Queue = "Orders", .Type = "Uav::Goto", .Payload = payload};
+    return {
+        .Source = source, .Queue = "Orders", .Type = LinkTypeName(Uav::Goto::IdlType()), .Payload = payload};
 }
 
 std::vector<std::uint8_t> GotoBytes(std::uint32_t id)
@@ -88,9 +90,32 @@ TEST_F(IncomingQueuesTest, ASenderToAQueueThatThereIsNotIsNamed)
 
 TEST_F(IncomingQueuesTest, AcceptsTheTypesOfTheQueueAlone)
 {
-    EXPECT_TRUE(incoming.AcceptsType("Orders", "Uav::Goto"));
-    EXPECT_FALSE(incoming.AcceptsType("Orders", "Uav::Pose"));
-    EXPECT_FALSE(incoming.AcceptsType("Nowhere", "Uav::Goto"));
+    EXPECT_TRUE(incoming.AcceptsType("Orders", LinkTypeName(Uav::Goto::IdlType())));
+    EXPECT_FALSE(incoming.AcceptsType("Orders", LinkTypeName(Uav::Pose::IdlType())));
+    EXPECT_FALSE(incoming.AcceptsType("Nowhere", LinkTypeName(Uav::Goto::IdlType())));
+}
+
+// A recorder is told the plain name of the type.
+TEST_F(IncomingQueuesTest, AcceptsOneDefinitionOfATypeAlone)
+{
+    IncomingQueues told(
+        Rules(), workspace, [] {}, IncomingQueues::QuicklyDecoded, true);
+    told.Find([](const std::string &) {});
+    LinkDelivery delivery = DeliveryOf("uav1", payloads[0]);
+    EXPECT_EQ(told.Deliver(delivery), LocalQueueResult::Ok);
+    std::string other(delivery.Type);
+    other.back() = other.back() == '0' ? '1' : '0';
+    delivery.Type = other;
+    EXPECT_FALSE(told.AcceptsType("Orders", other));
+    EXPECT_EQ(told.Deliver(delivery), LocalQueueResult::WrongType);
+    delivery.Type = "Uav::Goto";
+    EXPECT_EQ(told.Deliver(delivery), LocalQueueResult::WrongType);
+    EXPECT_EQ(Take(), 1u);
+    EXPECT_EQ(Take(), 0u);
+    std::vector<IncomingQueues::Received> received;
+    told.TakeReceived(received);
+    ASSERT_EQ(received.size(), 1u);
+    EXPECT_EQ(received[0].Type, "Uav::Goto");
 }
 
 // A fixture in which all messages are large.
@@ -152,6 +177,18 @@ TEST_F(LargeMessagesTest, AreNotDecodedForAFullQueue)
     }
     EXPECT_EQ(Deliver(0), LocalQueueResult::Full);
     EXPECT_FALSE(large.AnyUndecoded());
+}
+
+// It would hold up those behind it.
+TEST_F(LargeMessagesTest, OfAnotherDefinitionAreRefusedEvenIfTheQueueIsFull)
+{
+    for (int i = 0; i < 10; ++i)
+    {
+        incoming.Deliver(DeliveryOf("uav1", payloads[0]));
+    }
+    LinkDelivery delivery = DeliveryOf("uav1", payloads[0]);
+    delivery.Type = "Uav::Goto@0";
+    EXPECT_EQ(large.Deliver(delivery), LocalQueueResult::WrongType);
 }
 
 TEST_F(LargeMessagesTest, ThatDoNotDecodeAreRefused)

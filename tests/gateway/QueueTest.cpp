@@ -1,11 +1,15 @@
 // Queue messages between nodes: whole nodes on the simulated network. The link protocol has tests of its own.
 #include <gmock/gmock.h>
+#include <rabit/dynamic/DynamicMessage.h>
+#include <rabit/dynamic/DynamicType.h>
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include "HandNode.h"
 #include "SimulatedFleet.h"
+#include "names/TypeDefinition.h"
 
 namespace Rabit
 {
@@ -507,6 +511,60 @@ TEST_F(QueueTest, ARestartedReceiverGetsWhatIsSentAfterwards)
     EXPECT_TRUE(SendGoto(2));
     fleet.RunFor(5s);
     EXPECT_THAT(Take(manager), ElementsAre(2));
+}
+
+// Its bytes decode as the definition of the other node: longitude and latitude would be exchanged.
+constexpr const char *OtherGoto = R"(module Uav {
+@final struct Goto { unsigned long id; string<64> reply_to; double longitude_deg; double latitude_deg;
+                     double altitude_m; float speed_mps; };
+};
+)";
+
+TEST_F(QueueTest, MessagesThatWaitForANodeWithAnotherDefinitionOfTheirTypeAreRefusedAndHoldUpNoOther)
+{
+    // Types live as long as the process.
+    static const std::shared_ptr<const DynamicType> other = DynamicType::Parse(OtherGoto, "Uav::Goto").Type;
+    ASSERT_TRUE(other);
+    auto former = std::make_unique<HandNode>(fleet.Network, "uav2", 7);
+    fleet.RunFor(1s);
+    Gateway::Announcement announcement;
+    Gateway::AcceptedQueue &accepted = announcement.accepts.emplace_back();
+    accepted.queue = "MissionControl";
+    for (const MessageType *type :
+         {static_cast<const MessageType *>(other.get()), &Uav::TargetReport::IdlType()})
+    {
+        Gateway::QueueType &taken = accepted.types.emplace_back();
+        taken.type = type->Name();
+        taken.definition = DefinitionHash(*type);
+    }
+    accepted.from.emplace_back("*");
+    Gateway::Beat beat = former->Beat();
+    Announce(beat, announcement);
+    former->Write(beat);
+    fleet.RunFor(200ms);
+
+    const auto order = std::make_shared<RabitQueueReceipt>();
+    const auto report = std::make_shared<RabitQueueReceipt>();
+    auto target = std::make_shared<Uav::TargetReport>();
+    target->target = 9;
+    EXPECT_TRUE(ground.Workspace.AddMessageToQueue("uav2/MissionControl",
+                                                   std::make_shared<DynamicMessage>(other), order));
+    EXPECT_TRUE(ground.Workspace.AddMessageToQueue("uav2/MissionControl", target, report));
+    former.reset();
+    fleet.RunFor(10s);
+    EXPECT_EQ(order->Outcome(), QueueOutcome::Pending);
+    IdleManager &manager = fleet.Add(AircraftConfig("uav2")).AddIdleManager("MissionControl");
+    fleet.RunFor(5s);
+
+    EXPECT_THAT(Take(manager), ElementsAre(-9));
+    EXPECT_EQ(order->Outcome(), QueueOutcome::Refused);
+    EXPECT_EQ(report->Outcome(), QueueOutcome::Delivered);
+    EXPECT_EQ(ground.LinkTo("uav2", "MissionControl").undeliverable, 1u);
+    EXPECT_EQ(ground.LinkTo("uav2", "MissionControl").outbox, 0u);
+    EXPECT_THAT(
+        ground.Problems(),
+        HasSubstr("send uav2/MissionControl: messages of `Uav::Goto` that waited for uav2 were refused "
+                  "there"));
 }
 
 }  // namespace

@@ -20,17 +20,18 @@ namespace Rabit::Test
 namespace
 {
 
-constexpr const char *HelloBytes = "0300785634121032547698badcfe000000000000000001efcdab959aef3a";
+constexpr const char *HelloBytes = "0400785634121032547698badcfe000000000000000001efcdab959aef3a";
 constexpr const char *LongFrameBytes =
-    "031e785634121032547698badcfe000000000500000001efcdab959aef3a4433\n"
+    "041e785634121032547698badcfe000000000500000001efcdab959aef3a4433\n"
     "2211b1d1f9d603050207460b09060904154d1201000000000000800000000000\n"
-    "0000000001129103064f7264657273e807043edc0b04095561763a3a476f746f\n"
-    "05c0ffee010241045f0400f40303c0ffee0805c0ffee0102";
+    "0000000001129103064f7264657273e807043edc0b041a5561763a3a476f746f\n"
+    "403031323334353637383961626364656605c0ffee010241045f0400f40303c0\n"
+    "ffee0805c0ffee0102";
 constexpr const char *ShortFrameBytes =
-    "030d2143658715cd5b07780ae305050105070105e807000229014c010105c0ff\n"
+    "040d2143658715cd5b07780ae305050105070105e807000229014c010105c0ff\n"
     "ee0102";
 constexpr const char *HelloSampleBytes =
-    "000100021e0000000300785634121032547698badcfe000000000000000001ef\n"
+    "000100021e0000000400785634121032547698badcfe000000000000000001ef\n"
     "cdab959aef3a0000";
 constexpr const char *TypePartBytes = "540000008877665544332211e803000070110100c0ffee0102";
 constexpr const char *ReportBytes = "e4abf64941436b01370a6c696e650a";
@@ -81,7 +82,7 @@ LinkFrame LongFrame()
     LinkItem &whole =
         frame.Data.Items.emplace_back(ItemOf(1000, LinkFlagFirst | LinkFlagLast | LinkFlagRedelivered));
     whole.TypeNumber = 4;
-    whole.Type = "Uav::Goto";
+    whole.Type = "Uav::Goto@0123456789abcdef";
     whole.TtlLeft = 1500000;
     whole.Payload = Payload;
     LinkItem &skip = frame.Data.Items.emplace_back(ItemOf(1005, LinkFlagSkip));

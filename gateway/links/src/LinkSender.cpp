@@ -390,6 +390,7 @@ void LinkSender::Report(const OutboxMessage &message, LinkOutcome outcome)
             break;
         case LinkOutcome::RefusedThere:
             ++_counters.RefusedThere;
+            _context.Output.OnRefusedThere(_destination, _queue, *message.Type);
             break;
     }
     _context.Output.OnOutcome(message.Id, _destination, _queue, outcome);

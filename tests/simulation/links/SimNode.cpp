@@ -3,6 +3,7 @@
 #include <rabit/gateway/links/LinkFrameCodec.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace Rabit::Sim
@@ -11,8 +12,10 @@ namespace Rabit::Sim
 namespace
 {
 
-// Types of the messages. All queues take the first; the others fail as their names say.
-constexpr std::string_view GoodType = "Good";
+// Types of the messages. All queues take the one of their own program; the others fail as their names say.
+constexpr std::string_view GoodTypes[] = {"Good@0", "Good@1"};
+// Part of the starts of a node with another program than before.
+constexpr double OtherBuild = 0.1;
 constexpr std::string_view WrongType = "Wrong";
 constexpr std::string_view UnknownType = "Unknown";
 constexpr std::string_view BrokenType = "Broken";
@@ -51,6 +54,8 @@ void SimNode::Start(bool storageLost)
     LinkSettings settings = _world.Plan.Settings;
     settings.Node = _world.Plan.Nodes[_index].Name;
     settings.Clock = _world.Random.Next() | 1;
+    _build = (_build + (_wasStarted && _world.Random.Chance(OtherBuild) ? 1 : 0)) % std::size(GoodTypes);
+    _wasStarted = true;
     _links = std::make_unique<LinkNode>(settings, *this, *this, *this);
 }
 
@@ -91,7 +96,7 @@ void SimNode::Enqueue(std::size_t link)
     const std::string &destination = _world.Plan.Nodes[plan.Destination].Name;
     const std::string &queue = _world.Plan.Queues[plan.Queue].Name;
     const double kind = _world.Random.Unit();
-    const std::string_view type = kind < 0.97   ? GoodType
+    const std::string_view type = kind < 0.97   ? GoodTypes[_build]
                                   : kind < 0.98 ? WrongType
                                   : kind < 0.99 ? UnknownType
                                                 : BrokenType;
@@ -204,12 +209,12 @@ LocalQueueResult SimNode::Deliver(const LinkDelivery &delivery)
     {
         return LocalQueueResult::Full;
     }
-    if (delivery.Type != GoodType)
+    if (delivery.Type != GoodTypes[_build])
     {
         record->RefusedByQueue = true;
-        return delivery.Type == WrongType     ? LocalQueueResult::WrongType
-               : delivery.Type == UnknownType ? LocalQueueResult::Unknown
-                                              : LocalQueueResult::Undecodable;
+        return delivery.Type == UnknownType  ? LocalQueueResult::Unknown
+               : delivery.Type == BrokenType ? LocalQueueResult::Undecodable
+                                             : LocalQueueResult::WrongType;
     }
     if (delivery.Prepared)
     {

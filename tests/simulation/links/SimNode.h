@@ -97,6 +97,8 @@ private:
     std::size_t _firstPreparation = 0;       // of the present one
     std::uint64_t _storedCounter = 0;
     std::int64_t _wallSeconds;
+    bool _wasStarted = false;
+    std::size_t _build = 0;  // of its program, with its own definition of a type
     bool _calm = false;
 };
 

@@ -55,8 +55,8 @@ public:
     // True if that node may send to that queue. A constant of each queue: a link to a queue that is not
     // accepted has no state here, and each of its messages is refused (LinkOutcome::RefusedThere).
     virtual bool Accepts(std::string_view source, std::string_view queue) = 0;
-    // True if the accepted queue takes messages of that type. A constant, too: names of other types are not
-    // remembered.
+    // True if the accepted queue takes messages of that type, as the sender names it. A constant, too: names
+    // of other types are not remembered.
     virtual bool AcceptsType(std::string_view queue, std::string_view type) const = 0;
     // Puts one message into an accepted queue, or returns why not. Full holds the link back; Unknown,
     // WrongType and Undecodable consume the message for good, and the sender learns
@@ -86,6 +86,11 @@ public:
     virtual LinkOptions OptionsOf(std::string_view /*destination*/, std::string_view /*queue*/) const
     {
         return {};
+    }
+    // A message of that type ends as LinkOutcome::RefusedThere. OnOutcome follows.
+    virtual void OnRefusedThere(std::string_view /*destination*/, std::string_view /*queue*/,
+                                std::string_view /*type*/)
+    {
     }
     // The outcome of an accepted message is known.
     virtual void OnOutcome(std::uint64_t id, std::string_view destination, std::string_view queue,

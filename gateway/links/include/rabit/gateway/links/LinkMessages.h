@@ -20,7 +20,7 @@ namespace Rabit
 {
 
 // First byte of each frame; others are dropped. Raised when the meaning of anything changes.
-inline constexpr std::uint8_t LinkVersion = 3;
+inline constexpr std::uint8_t LinkVersion = 4;
 
 // Flags of one part in a LinkData.
 inline constexpr std::uint8_t LinkFlagSkip = 1;  // expired at the sender: consume, do not deliver; no payload
@@ -71,9 +71,9 @@ struct LinkItem
     // In the last part: the message's time to live when the frame was made, 0 or more; LinkNoExpiry: it never
     // expires.
     std::int64_t TtlLeft = LinkNoExpiry;
-    // In the first part: the type's number on this link, below LinkMaxTypes, and its IDL name, for instance
-    // `Uav::Goto`. The name may be left out once the receiver knows the number. LinkMaxTypes: it has no
-    // number.
+    // In the first part: the type's number on this link, below LinkMaxTypes, and its name, which tells its
+    // definition, too: the gateway's are as `Uav::Goto@0123456789abcdef`. The name may be left out once the
+    // receiver knows the number. LinkMaxTypes: it has no number.
     std::uint32_t TypeNumber = 0;
     std::string_view Type;
     // In the first of several parts: bytes of the whole message.
