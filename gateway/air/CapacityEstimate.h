@@ -61,8 +61,8 @@ public:
     // sent at arrivedAt - delay.
     void Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now);
 
-    // A beat of a peer, sent at `sentAt` by our clock, came without a report of our datagrams' delay. Beats
-    // carry reports until three seconds after the last late datagram.
+    // A beat of a peer, sent at `sentAt` by our clock, came without a report of our datagrams' delay, though
+    // it had room for one. Beats carry reports until three seconds after the last late datagram.
     void NothingLate(Peer peer, Duration sentAt, Duration now);
 
     // The others' messages of discovery, and all of their datagrams, come here by so much later than the

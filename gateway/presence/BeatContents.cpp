@@ -161,9 +161,15 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     // Receivers take a beat without strains as their end, so at least the worst one is told. An announcement
     // that never fits would leave this node without commands, so a small part goes before questions.
     const std::size_t leastPart = SizeOfLeastPart(now);
-    const std::size_t part = SizeOfWorstStrain() + leastPart <= room ? leastPart : 0;
-    const std::size_t strains = StrainsWithin(room - part);
-    room -= part + SizeOfStrains(strains);
+    const std::size_t worst = SizeOfWorstStrain();
+    const std::size_t part = worst + leastPart <= room ? leastPart : 0;
+    // A receiver that is not in a list with room for more takes its datagrams for punctual, so reports go
+    // before all strains but the worst, and before questions.
+    const std::size_t roomForDelays = room - part - std::min(room - part, worst);
+    const std::size_t delays = BeatFormat::Delay * std::min(_delays.Due(now, BeatFormat::MostDelays),
+                                                            roomForDelays / BeatFormat::Delay);
+    const std::size_t strains = StrainsWithin(room - part - delays);
+    room -= part + delays + SizeOfStrains(strains);
     AddWants(beat, now, room);
     AddTypes(beat, now, room);
     if (problems > 0)
@@ -179,6 +185,7 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     Gateway::BeatNews &news = NewsOf(beat);
     news.echoes = _peers.NextEchoes(now, BeatFormat::MostEchoes, room / BeatFormat::Echo);
     room -= news.echoes.size() * BeatFormat::Echo;
+    room += delays;
     news.delays = _delays.Take(now, std::min(BeatFormat::MostDelays, room / BeatFormat::Delay));
     room -= news.delays.size() * BeatFormat::Delay;
     room += part;

@@ -271,7 +271,10 @@ void Presence::TakeDelays(const HeardBeat &heard, const PeerTable::Peer &peer, S
             return;
         }
     }
-    served.NothingLate.emplace_back(peer.Tag, heard.Arrival - peer.Clock.LastDelay());
+    if (BeatFormat::TellsOfAllDelays(NewsOf(heard.Beat).delays.size()))
+    {
+        served.NothingLate.emplace_back(peer.Tag, heard.Arrival - peer.Clock.LastDelay());
+    }
 }
 
 void Presence::TakeIn(const PeerEvent &event, Duration now, Served &served)

@@ -81,7 +81,7 @@ public:
         // States of this node that others have requested, by index (Announcements::StateIndexOf).
         std::vector<std::size_t> StatesAsked;
         std::vector<DelayHeard> Delays;
-        // Nodes whose beats report no delay of this node's datagrams, and when they sent these beats.
+        // Nodes whose beats tell that no datagram of this node is late, and when they sent these beats.
         std::vector<std::pair<std::uint32_t, Duration>> NothingLate;
         // Nodes that request the text of a type, and the type.
         std::vector<std::pair<std::string, BeatExtensions::TypeQuestion>> TypesAsked;

@@ -34,6 +34,12 @@ inline constexpr std::size_t MostWants = 8;
 inline constexpr std::size_t MostEchoes = 2;  // and as many as there is room for while peers doubt this node
 // Each node needs some reports a second, and the peers take turns.
 inline constexpr std::size_t MostDelays = 4;
+// True if a beat with so many reports of delays tells that no datagram of the other nodes is late. A full
+// list tells nothing of them: their turn may come with the next beat.
+constexpr bool TellsOfAllDelays(std::size_t reports)
+{
+    return reports < MostDelays;
+}
 
 // The marks of tools and replays (wire/BeatExtensions.h).
 inline constexpr std::size_t ToolMark = Wanted(0);

@@ -367,6 +367,19 @@ TEST_F(BeatContentsTest, WhoLacksAStateAloneDoesNotAskForTheAnnouncement)
     EXPECT_EQ(NewsOf(Next(2s)).wants.at(0).offers, BeatFormat::NotLacking);
 }
 
+// Without a report the node would take its datagrams for punctual.
+TEST_F(BeatContentsTest, DelaysAreReportedBeforeAnythingIsAsked)
+{
+    BeginLongAgo(100, 0);
+    Hear("uav1", 1s, 99);
+    contents.Delays().Note(NodeTagOf("uav1", 5), 500ms, 1s);
+    const std::size_t room = BeatFormat::WithNews + BeatFormat::Wanted(0);
+    const Gateway::Beat first = Next(2s, room);
+    EXPECT_THAT(NewsOf(first).delays, SizeIs(1));
+    EXPECT_THAT(NewsOf(first).wants, IsEmpty());
+    EXPECT_THAT(NewsOf(Next(3s, room)).wants, SizeIs(1));
+}
+
 TEST_F(BeatContentsTest, NothingIsAskedOfWhoIsLostOrUnknown)
 {
     BeginLongAgo(100, 0);
