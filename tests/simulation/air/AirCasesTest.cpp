@@ -29,6 +29,18 @@ TEST(AirCases, ARadioIsSharedFairlyByManyWithShortQueues)
     HoldsFor({.Nodes = 6, .BitsPerSecond = 250e3, .Acknowledged = false}, 8);
 }
 
+// Not each beat has room for each node.
+TEST(AirCases, ARadioIsSharedByMoreNodesThanABeatReportsOn)
+{
+    HoldsFor({.Nodes = 12,
+              .BitsPerSecond = 1e6,
+              .Acknowledged = false,
+              .ReportsTakeTurns = true,
+              .Settled = 60s,
+              .Ends = 120s},
+             8);
+}
+
 TEST(AirCases, AWideRadioIsUsed)
 {
     HoldsFor({.Nodes = 2, .BitsPerSecond = 1e6, .Acknowledged = false}, 4);

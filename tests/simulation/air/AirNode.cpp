@@ -127,10 +127,7 @@ AirPacket AirNode::Make(StreamId stream, Time now)
     if (stream == _beat.Stream || stream == _acknowledgement.Stream)
     {
         packet.Bytes = _scenario.ReportBytes();
-        for (Heard &heard : _heard)
-        {
-            packet.Reports.push_back(std::exchange(heard.Fresh, std::nullopt));
-        }
+        AddReports(packet);
     }
     else if (stream == _command.Stream)
     {
@@ -150,6 +147,19 @@ AirPacket AirNode::Make(StreamId stream, Time now)
         packet.Bytes = TelemetryBytes;
     }
     return packet;
+}
+
+void AirNode::AddReports(AirPacket &packet)
+{
+    packet.Reports.resize(_heard.size());
+    const std::size_t first = _nextReport;
+    for (std::size_t i = 0; i < _heard.size() && packet.ReportsIn < _scenario.MostReports(); ++i)
+    {
+        const std::size_t node = (first + i) % _heard.size();
+        packet.Reports[node] = std::exchange(_heard[node].Fresh, std::nullopt);
+        packet.ReportsIn += packet.Reports[node] ? 1 : 0;
+        _nextReport = node + 1;
+    }
 }
 
 void AirNode::ReadyAgain(StreamId stream)
@@ -179,15 +189,27 @@ void AirNode::Hear(const AirPacket &packet, Time now)
         _acknowledges = true;
         _due = std::min(_due, std::max(now, _acknowledgement.NextAt));
     }
-    if (!packet.Reports.empty() && packet.Reports[_number])
+    if (!packet.Reports.empty())
     {
-        // The node knows how long the report was held there, and how late the beat itself is.
-        const AirPacket::Report &report = *packet.Reports[_number];
-        const Time held = packet.SentAt - report.ArrivedAt;
-        _estimate.Reported(static_cast<CapacityEstimate::Peer>(packet.From), report.Late,
-                           now - held - (transit - *heard.Least), now);
+        TakeReport(packet, transit - *heard.Least, now);
+    }
+}
+
+// `late`: how late the packet itself is.
+void AirNode::TakeReport(const AirPacket &packet, Time late, Time now)
+{
+    const auto peer = static_cast<CapacityEstimate::Peer>(packet.From);
+    if (const auto &report = packet.Reports[_number])
+    {
+        // The node knows how long the report was held there.
+        const Time held = packet.SentAt - report->ArrivedAt;
+        _estimate.Reported(peer, report->Late, now - held - late, now);
         _rateAt = now;
         _due = now;
+    }
+    else if (_scenario.ReportsTakeTurns && BeatFormat::TellsOfAllDelays(packet.ReportsIn))
+    {
+        _estimate.NothingLate(peer, now - late, now);
     }
 }
 

@@ -45,6 +45,8 @@ private:
     void ApplyRate(Time now);
     std::size_t BulkPiece() const;
     AirPacket Make(StreamId stream, Time now);
+    void AddReports(AirPacket &packet);
+    void TakeReport(const AirPacket &packet, Time late, Time now);
     void ReadyAgain(StreamId stream);
 
     const std::size_t _number;
@@ -63,6 +65,7 @@ private:
     Time _bulkSince{0};
     Time _rateAt{0};
     std::vector<Heard> _heard;
+    std::size_t _nextReport = 0;  // the node whose turn it is to be reported on
     Time _due{0};
 };
 

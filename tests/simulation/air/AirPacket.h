@@ -27,6 +27,7 @@ struct AirPacket
     bool IsBulk = false;
     Time ReadyAt{0};                             // of a command
     std::vector<std::optional<Report>> Reports;  // of a beat or an acknowledgement, by node
+    std::size_t ReportsIn = 0;                   // the number of these
 };
 
 }  // namespace Rabit::Sim

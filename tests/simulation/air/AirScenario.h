@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "AirPacket.h"
+#include "wire/BeatFormat.h"
 
 namespace Rabit::Sim
 {
@@ -30,6 +31,9 @@ struct AirScenario
     Time Commands = std::chrono::milliseconds(400);
     Time Beats = std::chrono::milliseconds(500);
     bool Acknowledged = true;  // bulk goes to the last node, which says every 250 ms what came
+    // A beat or an acknowledgement reports on BeatFormat::MostDelays nodes at most, which take turns.
+    // Without, it reports on all nodes that were heard.
+    bool ReportsTakeTurns = false;
     // Share of packets lost, at each receiver.
     double Loss = 0.0;
     // From then on node 0 hears nothing of the other nodes.
@@ -39,8 +43,9 @@ struct AirScenario
     Time Ends = std::chrono::seconds(90);
     std::uint64_t Seed = 1;
 
-    // Of a beat or an acknowledgement, which carry a report on each node.
-    std::size_t ReportBytes() const { return 90 + 8 * Nodes; }
+    // Reports in a beat or an acknowledgement, at most, and its bytes.
+    std::size_t MostReports() const { return ReportsTakeTurns ? BeatFormat::MostDelays : Nodes; }
+    std::size_t ReportBytes() const { return 90 + 8 * MostReports(); }
 };
 
 }  // namespace Rabit::Sim
