@@ -1,5 +1,6 @@
 #include "recording/MessageTaps.h"
 
+#include <rabit/ManagerControlMessage.h>
 #include <rabit/ManagerStatusMessage.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
@@ -77,6 +78,11 @@ MessageTaps::MessageTaps(const GatewayConfig &config, RabitWorkspace &workspace,
       _target(std::move(target)),
       _managers(_target->Inbox().AddStream(JsonStreams::Managers(config.Node)))
 {
+    if (!config.Record->Queues && !config.Tool)  // a tool hears none
+    {
+        _notRecorded["queue messages"] = "`record: queues` is off";
+        _target->Inbox().SetMetadata("rabit.not_recorded", {_notRecorded.begin(), _notRecorded.end()});
+    }
 }
 
 MessageTaps::~MessageTaps() = default;
@@ -162,6 +168,10 @@ std::shared_ptr<MessageTap> MessageTaps::Tap(const std::string &name,
     if (dynamic_cast<const ManagerStatusMessage *>(message.get()) != nullptr)
     {
         return TapManager(global);
+    }
+    if (dynamic_cast<const ManagerControlMessage *>(message.get()) != nullptr)
+    {
+        return nullptr;  // of the reactor, no data
     }
     const MessageType *type = MessageTypeRegistry::Of(*message);
     if (type == nullptr)

@@ -13,6 +13,7 @@
 #include "Table.h"
 #include "recording/mcap/FileSource.h"
 #include "recording/mcap/McapContents.h"
+#include "recording/replay/RecordingLacks.h"
 
 namespace Rabit::Tool
 {
@@ -145,9 +146,11 @@ bool ShowText(const std::string &file, Mcap::ByteSource &source, const Contents 
     head.push_back({"messages", std::to_string(contents.Statistics.MessageCount) + " in " +
                                     std::to_string(contents.Chunks.size()) + " chunks"});
     std::vector<std::string> lines = TableLines(head);
-    for (const auto &[topic, count] : MetadataOf(contents, "rabit.losses"))
+    Replay::RecordingLacks lacks;
+    lacks.Add(contents);
+    for (const std::string &lack : lacks.Messages())
     {
-        lines.push_back("! " + SafeText(topic) + ": " + SafeText(count) + " messages were not recorded");
+        lines.push_back("! " + SafeText(lack));
     }
     for (const std::string &problem : contents.Problems)
     {

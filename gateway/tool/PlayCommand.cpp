@@ -168,7 +168,8 @@ int Tell(const Options &options, const PlayedFiles &files, const ReplayFleet &fl
                         {"undecodable", counts.Undecodable},
                         {"replaced", counts.Replaced},
                         {"ages_not_kept", counts.AgesNotKept},
-                        {"rounds", rounds}});
+                        {"rounds", rounds},
+                        {"lacks", files.Plan().Lacks}});
     }
     else
     {
@@ -246,6 +247,7 @@ int Run(const Options &options, Wakeup &wakeup)
         Output::Talk("there is nothing in it that can be played, or nothing that was named");
         return ProblemFound;
     }
+    Output::Talk(files.Plan().Lacks);
     Replay::NodeRenames renames;
     ReplayTimeline::Settings settings;
     int code = NameNodes(options, files.Plan(), renames);

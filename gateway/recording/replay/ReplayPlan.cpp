@@ -5,8 +5,10 @@
 #include <tuple>
 #include <utility>
 
+#include "names/ListedNames.h"
 #include "names/NamePattern.h"
 #include "recording/mcap/RecordedChannel.h"
+#include "recording/replay/RecordingLacks.h"
 
 namespace Rabit::Replay
 {
@@ -84,19 +86,25 @@ bool Fill(const Mcap::Channel &channel, const std::string &recorder, Candidate &
     return FillMessage(channel, described, recorder, candidate);
 }
 
+bool HasCdr(const Mcap::Contents &contents, const Mcap::Channel &channel)
+{
+    const auto schema = contents.Schemas.find(channel.SchemaId);
+    return channel.MessageEncoding == "cdr" && schema != contents.Schemas.end() &&
+           schema->second.Encoding == "omgidl";
+}
+
 std::optional<Candidate> CandidateOf(const Mcap::Contents &contents, const Mcap::Channel &channel,
                                      const std::string &recorder)
 {
-    const auto schema = contents.Schemas.find(channel.SchemaId);
-    if (channel.MessageEncoding != "cdr" || schema == contents.Schemas.end() ||
-        schema->second.Encoding != "omgidl")
+    if (!HasCdr(contents, channel))
     {
         return std::nullopt;
     }
+    const Mcap::Schema &schema = contents.Schemas.at(channel.SchemaId);
     Candidate candidate;
     candidate.Channel = channel.Id;
-    candidate.Stream.Type = schema->second.Name;
-    candidate.Stream.IdlText = schema->second.Data;
+    candidate.Stream.Type = schema.Name;
+    candidate.Stream.IdlText = schema.Data;
     const auto counted = contents.Statistics.ChannelMessageCounts.find(channel.Id);
     candidate.Messages = counted == contents.Statistics.ChannelMessageCounts.end() ? 0 : counted->second;
     return Fill(channel, recorder, candidate) ? std::optional(std::move(candidate)) : std::nullopt;
@@ -119,25 +127,79 @@ bool IsSelected(const Candidate &candidate, const PlanSettings &settings)
            !MatchesAny(settings.Exclude, name);
 }
 
-// Keeps one recorder of each message or queue: its own node, or else the recorder with most messages.
-std::vector<Candidate> OneRecorderEach(std::vector<Candidate> candidates)
+// All recordings of one message or queue.
+struct Recordings
 {
-    std::map<std::pair<std::string, std::string>, std::uint64_t> counts;       // by thing and recorder
-    std::map<std::string, std::tuple<bool, std::uint64_t, std::string>> best;  // by thing
+    struct Count
+    {
+        bool IsOwn = false;
+        std::uint64_t Messages = 0;
+        std::uint64_t Channels = 0;
+    };
+    const ReplayStream *Stream = nullptr;
+    std::map<std::string, Count> Of;  // by recorder
+    std::string Best;                 // the recorder whose recording is played
+};
+
+// Returns a line about the gap in the played recording of one message or queue; empty: there is none.
+// `recorders` has each node whose own recording is among the files.
+std::string LackOf(const Recordings &recordings, const std::set<std::string> &recorders)
+{
+    const ReplayStream &stream = *recordings.Stream;
+    const Recordings::Count &best = recordings.Of.at(recordings.Best);
+    const std::string name = stream.What == ReplayStream::Kind::Queue
+                                 ? stream.Peer + "/" + stream.Name + ", from " + stream.Node
+                                 : stream.Node + "/" + stream.Name;
+    if (!best.IsOwn)
+    {
+        return recorders.count(stream.Node) == 0 ? ""
+                                                 : name + ": not in the recording of " + stream.Node +
+                                                       "; played as " + recordings.Best + " has it";
+    }
+    for (const auto &[recorder, other] : recordings.Of)
+    {
+        // A recorder may repeat a State at the beginning of each file.
+        if (other.Messages > best.Messages + other.Channels)
+        {
+            return name + ": played from the recording of " + recordings.Best + ", which has " +
+                   std::to_string(best.Messages) + " messages, though that of " + recorder + " has " +
+                   std::to_string(other.Messages);
+        }
+    }
+    return "";
+}
+
+// Keeps one recorder of each message or queue: its own node, or else the recorder with most messages. Adds
+// what its recording lacks.
+std::vector<Candidate> OneRecorderEach(std::vector<Candidate> candidates,
+                                       const std::set<std::string> &recorders,
+                                       std::vector<std::string> &lacks)
+{
+    std::map<std::string, Recordings> things;
     for (const Candidate &candidate : candidates)
     {
-        counts[{ThingOf(candidate.Stream), candidate.Stream.Recorder}] += candidate.Messages;
+        Recordings &recordings = things[ThingOf(candidate.Stream)];
+        recordings.Stream = &candidate.Stream;
+        Recordings::Count &count = recordings.Of[candidate.Stream.Recorder];
+        count.IsOwn = candidate.IsOwn;
+        count.Messages += candidate.Messages;
+        ++count.Channels;
     }
-    for (const Candidate &candidate : candidates)
+    for (auto &[thing, recordings] : things)
     {
-        const std::string thing = ThingOf(candidate.Stream);
-        const std::string &recorder = candidate.Stream.Recorder;
-        const std::tuple rank(candidate.IsOwn, counts[{thing, recorder}], recorder);
-        const auto [known, isNew] = best.try_emplace(thing, rank);
-        known->second = isNew ? rank : std::max(known->second, rank);
+        const auto rank = [](const auto &entry)
+        { return std::tuple(entry.second.IsOwn, entry.second.Messages, entry.first); };
+        recordings.Best = std::max_element(recordings.Of.begin(), recordings.Of.end(),
+                                           [&rank](const auto &left, const auto &right)
+                                           { return rank(left) < rank(right); })
+                              ->first;
+        if (std::string lack = LackOf(recordings, recorders); !lack.empty())
+        {
+            lacks.push_back(std::move(lack));
+        }
     }
-    std::erase_if(candidates, [&](const Candidate &candidate)
-                  { return std::get<2>(best[ThingOf(candidate.Stream)]) != candidate.Stream.Recorder; });
+    std::erase_if(candidates, [&things](const Candidate &candidate)
+                  { return things[ThingOf(candidate.Stream)].Best != candidate.Stream.Recorder; });
     return candidates;
 }
 
@@ -149,8 +211,16 @@ bool IsNodeSelected(const std::string &node, const PlanSettings &settings)
            !MatchesAny(settings.Exclude, name);
 }
 
+// Selected channels of all files, and each node whose own recording is among them.
+struct Selection
+{
+    std::vector<Candidate> Candidates;
+    std::set<std::string> Recorders;
+};
+
 // Adds the node that recorded a file, or a part of a merged one, and its domain.
-void TakeRecorder(const Mcap::TextMap &about, const PlanSettings &settings, ReplayPlan &plan)
+void TakeRecorder(const Mcap::TextMap &about, const PlanSettings &settings, Selection &selection,
+                  ReplayPlan &plan)
 {
     const std::string node = Mcap::ValueOf(about, "node");
     const std::string domain = Mcap::ValueOf(about, "domain");
@@ -158,17 +228,47 @@ void TakeRecorder(const Mcap::TextMap &about, const PlanSettings &settings, Repl
     {
         plan.Domains.insert(domain);
     }
-    if (IsNodeName(node) && Mcap::ValueOf(about, "kind").empty() && IsNodeSelected(node, settings))
+    if (IsNodeName(node) && Mcap::ValueOf(about, "kind").empty())
     {
-        plan.Nodes.insert(node);
+        selection.Recorders.insert(node);
+        if (IsNodeSelected(node, settings))
+        {
+            plan.Nodes.insert(node);
+        }
     }
 }
 
-// Returns the selected channels of all files. Adds nodes and domains to the plan.
-std::vector<Candidate> CandidatesOf(const std::vector<const Mcap::Contents *> &files,
-                                    const PlanSettings &settings, ReplayPlan &plan)
+// Adds what the files themselves tell that they lack, and the topics that cannot be played.
+void AddLacks(const std::vector<const Mcap::Contents *> &files, ReplayPlan &plan)
 {
-    std::vector<Candidate> candidates;
+    RecordingLacks lacks;
+    std::set<std::string> topics;
+    for (const Mcap::Contents *file : files)
+    {
+        lacks.Add(*file);
+        for (const auto &[id, channel] : file->Channels)
+        {
+            if (Mcap::Describe(channel).Kind != Mcap::ChannelKind::Recorder && !HasCdr(*file, channel))
+            {
+                topics.insert(channel.Topic);
+            }
+        }
+    }
+    plan.Lacks = lacks.Messages();
+    const std::vector<std::string> missing = lacks.Files();
+    plan.Lacks.insert(plan.Lacks.end(), missing.begin(), missing.end());
+    if (!topics.empty())
+    {
+        plan.Lacks.push_back("without CDR and the IDL of their types, and not played: " +
+                             ListedNames(std::vector<std::string>(topics.begin(), topics.end())));
+    }
+}
+
+// Adds nodes and domains to the plan.
+Selection SelectionOf(const std::vector<const Mcap::Contents *> &files, const PlanSettings &settings,
+                      ReplayPlan &plan)
+{
+    Selection selection;
     for (std::size_t file = 0; file < files.size(); ++file)
     {
         std::string recorder;
@@ -177,7 +277,7 @@ std::vector<Candidate> CandidatesOf(const std::vector<const Mcap::Contents *> &f
             if (metadata.Name == "rabit.node" || metadata.Name == "rabit.recording")
             {
                 recorder = Mcap::ValueOf(metadata.Values, "node");
-                TakeRecorder(metadata.Values, settings, plan);
+                TakeRecorder(metadata.Values, settings, selection, plan);
             }
         }
         for (const auto &[id, channel] : files[file]->Channels)
@@ -186,11 +286,11 @@ std::vector<Candidate> CandidatesOf(const std::vector<const Mcap::Contents *> &f
             if (candidate && IsSelected(*candidate, settings))
             {
                 candidate->File = file;
-                candidates.push_back(std::move(*candidate));
+                selection.Candidates.push_back(std::move(*candidate));
             }
         }
     }
-    return candidates;
+    return selection;
 }
 
 }  // namespace
@@ -199,8 +299,11 @@ ReplayPlan PlanReplay(const std::vector<const Mcap::Contents *> &files, const Pl
 {
     ReplayPlan plan;
     plan.Channels.resize(files.size());
+    AddLacks(files, plan);
+    Selection selection = SelectionOf(files, settings, plan);
     std::map<std::string, std::size_t> known;  // streams
-    for (Candidate &candidate : OneRecorderEach(CandidatesOf(files, settings, plan)))
+    for (Candidate &candidate :
+         OneRecorderEach(std::move(selection.Candidates), selection.Recorders, plan.Lacks))
     {
         ReplayStream &stream = candidate.Stream;
         const std::string key = ThingOf(stream) + ' ' + stream.Type + ' ' + stream.IdlText;

@@ -51,11 +51,14 @@ struct ReplayPlan
     std::set<std::string> Nodes;
     // Domains in which they were, as far as the files say.
     std::set<std::string> Domains;
+    // Lines about gaps: those that the files tell of themselves (RecordingLacks), and messages of which
+    // another recorder has more. They may hold any bytes that the files hold.
+    std::vector<std::string> Lacks;
 };
 
 // Plans a replay. If several nodes recorded a message, the recording of its own node is played, or else the
 // one with most messages. Queue messages are played as they were sent, or else as they were received.
-// Channels with invalid names, or without CDR and an IDL text, are ignored.
+// Channels with invalid names, or without CDR and an IDL text, are ignored; Lacks tells of the latter.
 ReplayPlan PlanReplay(const std::vector<const Mcap::Contents *> &files, const PlanSettings &settings);
 
 }  // namespace Rabit::Replay

@@ -398,7 +398,21 @@ TEST_F(RecorderManagerTest, SaysInTheFileWhoWasRecordedAndWhatCouldNotBe)
     Fleet.Stop("uav1");
     const MemoryFile file = Disks.at("uav1")->Open(Disks.at("uav1")->Names().at(0));
     EXPECT_EQ(MetadataOf(file, "rabit.node").at("node"), "uav1");
-    EXPECT_EQ(MetadataOf(file, "rabit.not_recorded").at("Plain"), "its type was not made from IDL");
+    const auto notRecorded = MetadataOf(file, "rabit.not_recorded");
+    ASSERT_EQ(notRecorded.size(), 1u) << "messages that control managers are no data";
+    EXPECT_EQ(notRecorded.at("Plain"), "its type was not made from IDL");
+}
+
+TEST_F(RecorderManagerTest, SaysInTheFileThatQueueMessagesAreNotRecorded)
+{
+    GatewayConfig config = Watching("uav1");
+    config.Record = RecordSettings{.Folder = "/recordings"};
+    config.Record->Queues = false;
+    AddRecorded(config);
+    Fleet.RunFor(1s);
+    Fleet.Stop("uav1");
+    const MemoryFile file = Disks.at("uav1")->Open(Disks.at("uav1")->Names().at(0));
+    EXPECT_EQ(MetadataOf(file, "rabit.not_recorded").at("queue messages"), "`record: queues` is off");
 }
 
 TEST_F(RecorderManagerTest, WritesABlackBoxWhenACommandIsRefused)

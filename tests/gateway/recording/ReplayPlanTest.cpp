@@ -143,6 +143,76 @@ TEST_F(ReplayPlanTest, OfWhatSeveralRecordedThatOfItsOwnNodeIsPlayed)
     EXPECT_THAT(NamesOf(Plan()), ElementsAre("uav1/Pose<uav1"));
 }
 
+TEST_F(ReplayPlanTest, ARecordingThatIsWholeLacksNothing)
+{
+    PlayedFile &own = AddFile("uav1");
+    own.AddMetadata("rabit.file",
+                    {{"node", "uav1"}, {"number", "7"}, {"recording", "uav1_000007_20261123T024640Z"}});
+    own.Add(own.Posted("uav1", "MissionState"), 1, 1);
+    own.Channel("uav1/Recorder/Log", {{"rabit.kind", "recorder"}}, "foxglove.Log", "json");
+    // A recorder repeats the state at the beginning of a file.
+    PlayedFile &ground = AddFile("ground");
+    const std::uint16_t mirrored = ground.Mirrored("uav1", "MissionState");
+    ground.Add(mirrored, 1, 1);
+    ground.Add(mirrored, 2, 1);
+    EXPECT_THAT(Plan().Lacks, IsEmpty());
+}
+
+// As those that came to another node later, before the files of the own one were removed.
+TEST_F(ReplayPlanTest, MessagesThatAnOwnRecordingLacksAndAnotherHasAreTold)
+{
+    PlayedFile &own = AddFile("uav1");
+    own.Add(own.Posted("uav1", "Pose"), 1, 1);
+    PlayedFile &ground = AddFile("ground");
+    const std::uint16_t live = ground.Mirrored("uav1", "Pose");
+    const std::uint16_t later =
+        ground.Channel("uav1/Pose", {{"rabit.kind", "backfilled"}, {"rabit.node", "uav1"}});
+    for (std::uint64_t at = 1; at <= 3; ++at)
+    {
+        ground.Add(live, at, 1);
+        ground.Add(later, at + 10, 1);
+    }
+    ground.Add(ground.Mirrored("uav1", "Findings"), 1, 1);
+    const ReplayPlan plan = Plan();
+    EXPECT_THAT(NamesOf(plan), UnorderedElementsAre("uav1/Pose<uav1", "uav1/Findings<ground"));
+    EXPECT_THAT(plan.Lacks, UnorderedElementsAre(
+                                "uav1/Pose: played from the recording of uav1, which has 1 messages, though "
+                                "that of ground has 6",
+                                "uav1/Findings: not in the recording of uav1; played as ground has it"));
+    EXPECT_THAT(Plan({.Exclude = {"*/*"}}).Lacks, IsEmpty()) << "neither is played";
+}
+
+TEST_F(ReplayPlanTest, WhatAFileSaysThatItLacksIsToldOnce)
+{
+    for (const char *lost : {"4", "7"})
+    {
+        PlayedFile &file = AddFile("uav1");
+        file.AddMetadata("rabit.losses", {{"uav1/Pose", lost}});
+        file.AddMetadata("rabit.not_recorded", {{"queue messages", "`record: queues` is off"},
+                                                {"Plain", "its type was not made from IDL"},
+                                                {"Other", "its type was not made from IDL"}});
+        file.Channel("uav1/Json", {}, "x", "json");
+    }
+    EXPECT_THAT(Plan().Lacks,
+                ElementsAre("uav1/Pose: 7 messages were not recorded",
+                            "uav1 did not record queue messages: `record: queues` is off",
+                            "uav1 did not record Other, Plain: its type was not made from IDL",
+                            "without CDR and the IDL of their types, and not played: `uav1/Json`"));
+}
+
+TEST_F(ReplayPlanTest, FilesThatAreMissingOfARecordingAreTold)
+{
+    for (const char *number : {"4", "5", "9"})
+    {
+        AddFile("uav1").AddMetadata(
+            "rabit.file",
+            {{"node", "uav1"}, {"number", number}, {"recording", "uav1_000003_20261123T024640Z"}});
+    }
+    EXPECT_THAT(Plan().Lacks,
+                ElementsAre("uav1: file 3 is missing of recording uav1_000003_20261123T024640Z",
+                            "uav1: files 6 to 8 are missing of recording uav1_000003_20261123T024640Z"));
+}
+
 TEST_F(ReplayPlanTest, OfWhatOthersRecordedThatOfWhoHasMostOfItIsPlayed)
 {
     for (const auto &[recorder, messages] :

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "recording/mcap/McapContents.h"
+
+namespace Rabit::Replay
+{
+
+// Collects the gaps that recordings tell of themselves: messages that were dropped or not recorded at all,
+// and missing files, between those that are there or before them.
+class RecordingLacks
+{
+public:
+    void Add(const Mcap::Contents &file);
+    // Messages, in lines. Their text comes from the files, and may hold any bytes.
+    std::vector<std::string> Messages() const;
+    // Files, likewise.
+    std::vector<std::string> Files() const;
+
+private:
+    std::map<std::pair<std::string, std::string>, std::uint64_t> _losses;  // by recording and topic
+    std::map<std::pair<std::string, std::string>, std::set<std::string>> _notRecorded;  // by node and reason
+    std::map<std::pair<std::string, std::string>, std::set<std::uint64_t>> _files;  // by node and recording
+};
+
+}  // namespace Rabit::Replay
