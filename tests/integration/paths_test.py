@@ -22,6 +22,7 @@ RATE = 50
 LONGEST_GAP_S = 1.0  # and what the machine took
 LIMIT_S = 400  # only ends a broken test
 UP_S, CUT_S = 6, 4
+DEVICES = {"mesh": "eth0", "modem": "eth1"}
 
 
 class TwoNetworks(field.Field):
@@ -45,8 +46,18 @@ class TwoNetworks(field.Field):
             field.run("tc", "-n", self.space(node), "qdisc", "replace", "dev", "eth1", "root", "tbf", "rate",
                       f"{self.kbit}kbit", "burst", "2000", "limit", "16000")
 
-    def sent(self, node, device):
-        return int(field.run_in(self.space(node), "cat", f"/sys/class/net/{device}/statistics/tx_bytes"))
+    def sent(self, node, device, what="bytes"):
+        return int(field.run_in(self.space(node), "cat", f"/sys/class/net/{device}/statistics/tx_{what}"))
+
+    def cut_network(self, *names):
+        rules = "\n".join(f'  iifname "{DEVICES[name]}" drop' for name in names)
+        text = f"table ip network {{\n chain arriving {{\n  type filter hook input priority 1;\n{rules}\n }}\n}}\n"
+        for node in self.nodes:
+            field.run_in(self.space(node), "nft", "-f", "-", text=text)
+
+    def heal_network(self):
+        for node in self.nodes:
+            field.run_in(self.space(node), "nft", "delete", "table", "ip", "network")
 
 
 def ledger(ground, node):

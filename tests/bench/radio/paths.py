@@ -21,7 +21,7 @@ import paths_test  # noqa: E402
 
 PAYLOAD = 50
 MESH_KBIT = 10_000
-DEVICES = {"mesh": "eth0", "modem": "eth1"}
+DEVICES = paths_test.DEVICES
 
 
 def percentile(values, share):
@@ -38,16 +38,6 @@ class Networks(paths_test.TwoNetworks):
         super()._connect()
         for node in self.nodes:
             self.shape(node, MESH_KBIT)
-
-    def cut_network(self, name):
-        text = ("table ip network {\n chain arriving {\n  type filter hook input priority 1;\n"
-                f"  iifname \"{DEVICES[name]}\" drop\n }}\n}}\n")
-        for node in self.nodes:
-            field.run_in(self.space(node), "nft", "-f", "-", text=text)
-
-    def heal_network(self):
-        for node in self.nodes:
-            field.run_in(self.space(node), "nft", "delete", "table", "ip", "network")
 
     def sent_by_all(self):
         return {name: sum(self.sent(node, device) for node in self.nodes) for name, device in DEVICES.items()}

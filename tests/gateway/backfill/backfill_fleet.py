@@ -22,8 +22,12 @@ class Fleet:
         self.folder = pathlib.Path(folder)
         self.aircraft = [node for node in ground.nodes if node != "ground"]
 
+    def network(self, node):
+        """The lines of its configuration."""
+        return f"interfaces: [{self.ground.address(node)}]\ntransport: {self.transport}\n"
+
     def write(self, node, more=""):
-        common = (f"node: {node}\ninterfaces: [{self.ground.address(node)}]\ntransport: {self.transport}\n"
+        common = (f"node: {node}\n{self.network(node)}"
                   f"state_dir: {self.folder}/state\n{more}")
         record = f"record:\n  folder: {self.recordings(node)}\n  free: 0B\n  split_time: 20s\n"
         if node == "ground":
