@@ -2,8 +2,7 @@
 # batches: most of the compile time of a file goes into its headers, and a batch includes them once.
 # batches.py chooses the batches. Call this last, when all targets exist. The batches are chosen when CMake
 # configures: if two files of a batch define the same name later, the compiler says "redefinition"; then run
-# cmake again. Targets with the property RABIT_COMPILED_ALONE are left out,
-# but for sanitizers.
+# cmake again.
 set(RABIT_UNITY "" CACHE STRING "Folders, relative to the project's, in which several files of a target are compiled as one")
 set(RABIT_UNITY_MOST 12 CACHE STRING "How many files are compiled as one, at most")
 mark_as_advanced(RABIT_UNITY_MOST)
@@ -21,10 +20,6 @@ function(rabit_list_units folder list)
     endif()
   endforeach()
   foreach(target IN LISTS targets)
-    get_target_property(alone ${target} RABIT_COMPILED_ALONE)
-    if(alone AND NOT RABIT_SANITIZE)
-      continue()
-    endif()
     get_target_property(type ${target} TYPE)
     if(NOT type MATCHES "^(EXECUTABLE|(STATIC|SHARED|MODULE|OBJECT)_LIBRARY)$")
       continue()
