@@ -6,7 +6,6 @@ namespace Ground
 {
 namespace
 {
-constexpr std::size_t LongestName = 64;
 constexpr std::size_t MostNamed = 4;
 
 std::string NamesOf(const AreaStatus &area, AreaProgress progress)

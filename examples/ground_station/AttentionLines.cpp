@@ -10,9 +10,6 @@ namespace Ground
 {
 namespace
 {
-constexpr std::size_t LongestName = 64;
-constexpr std::size_t LongestReason = 400;
-
 // The way in which a command failed at its aircraft; null for all other commands.
 const char *HowItFailed(CommandProgress progress)
 {

@@ -84,6 +84,9 @@ std::vector<std::string> FleetLogLines(const std::vector<FleetRow> &rows, double
 // empty if all is heard, or nothing. An aircraft is UP while its gateway's beats come.
 std::string WhatIsMissing(const FleetRow &row);
 
+// Limits of texts in a line, in characters: names of nodes, queues and messages, and reasons.
+inline constexpr std::size_t LongestName = 64;
+inline constexpr std::size_t LongestReason = 400;
 // The text with everything but printable ASCII replaced by `?`, and cut to a length.
 std::string Printable(const std::string &text, std::size_t longest);
 

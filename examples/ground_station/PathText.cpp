@@ -10,10 +10,10 @@ namespace Ground
 {
 namespace
 {
-constexpr std::size_t LongestName = 24;
+constexpr std::size_t LongestNode = 24;
 constexpr std::size_t ColumnWidth = PathColumnsWidth / 2;
 
-std::string Right(const std::string &text)
+std::string Column(const std::string &text)
 {
     return std::string(ColumnWidth - std::min(ColumnWidth, text.size()), ' ') + text;
 }
@@ -44,13 +44,13 @@ std::string ListText(const FleetRow &row)
     if (IsDeliveryKnown(row))
         text.append(text.empty() ? "" : " ").append(BytesPerSecondText(row.DeliveryRate));
     const bool old = IsOld(row);
-    return Printable(row.Node, LongestName) + (old ? " (" : " ") + text + (old ? ")" : "");
+    return Printable(row.Node, LongestNode) + (old ? " (" : " ") + text + (old ? ")" : "");
 }
 }  // namespace
 
 std::string PathHeading()
 {
-    return Right("RTT ms") + " " + Right("kB/s");
+    return Column("RTT ms") + " " + Column("kB/s");
 }
 
 std::string PathColumns(const FleetRow &row)
@@ -58,7 +58,7 @@ std::string PathColumns(const FleetRow &row)
     const bool old = IsOld(row);
     std::string roundTrip = old ? "(" : "";
     roundTrip += MillisecondsText(row.RoundTripS);
-    return Right(roundTrip) + " " + Right(DeliveryText(row) + (old ? ")" : ""));
+    return Column(roundTrip) + " " + Column(DeliveryText(row) + (old ? ")" : ""));
 }
 
 std::vector<std::string> PathLines(const std::vector<FleetRow> &rows, std::size_t columns)

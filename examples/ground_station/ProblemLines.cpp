@@ -9,9 +9,6 @@ namespace Ground
 {
 namespace
 {
-constexpr std::size_t LongestName = 64;
-constexpr std::size_t LongestReason = 400;
-
 std::string Count(std::size_t problems, double fleetAgeS)
 {
     return std::to_string(problems) + (problems == 1 ? " problem" : " problems") +

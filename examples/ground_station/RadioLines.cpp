@@ -10,8 +10,6 @@ namespace Ground
 {
 namespace
 {
-constexpr std::size_t LongestName = 64;
-
 std::string Limits(const Rabit::Gateway::AirStatus &air)
 {
     std::string text;
@@ -61,7 +59,7 @@ std::vector<std::string> Classes(const Rabit::Gateway::AirStatus &air)
     return parts;
 }
 
-std::string ToText(const HeldLink &link)
+std::string LineOf(const HeldLink &link)
 {
     std::string text = Printable(link.Node, LongestName) + "/" + Printable(link.Queue, LongestName) + ": " +
                        std::to_string(link.Waiting) + (link.Waiting == 1 ? " waits" : " wait");
@@ -70,7 +68,7 @@ std::string ToText(const HeldLink &link)
     return text;
 }
 
-std::string ToText(const HeldStream &stream)
+std::string LineOf(const HeldStream &stream)
 {
     return Printable(stream.Message, LongestName) + ": " + PerSecondText(stream.PostedPerS) + "/s posted, " +
            PerSecondText(stream.SentPerS) + "/s sent";
@@ -86,7 +84,7 @@ std::vector<std::string> HeldByName(const RadioUse &use)
         {
             if (lines.size() == HeldOnScreen)
                 return;
-            lines.push_back(ToText(one));
+            lines.push_back(LineOf(one));
         }
     };
     add(use.Links);

@@ -13,7 +13,7 @@ namespace Ground
 {
 namespace
 {
-constexpr std::size_t LongestName = 20;
+constexpr std::size_t LongestAircraft = 20;
 }
 
 std::string ToText(Uav::TargetStage stage)
@@ -23,7 +23,7 @@ std::string ToText(Uav::TargetStage stage)
 
 std::string NameOf(const Uav::TargetName &name)
 {
-    return Printable(name.aircraft, LongestName) + "/" + std::to_string(name.number);
+    return Printable(name.aircraft, LongestAircraft) + "/" + std::to_string(name.number);
 }
 
 std::string NameOf(const FoundTarget &target)
@@ -39,7 +39,7 @@ std::string TargetLine(const FoundTarget &target)
                   target.Finding.longitude_deg);
     std::string line = text.data();
     if (!target.Finding.validated_by.empty())
-        line += "  validated by " + Printable(target.Finding.validated_by, LongestName);
+        line += "  validated by " + Printable(target.Finding.validated_by, LongestAircraft);
     if (target.Finding.tracked_s > 0)
         line += Format(", followed for %.0f s", static_cast<double>(target.Finding.tracked_s));
     for (const Uav::TargetName &name : target.Formerly)
