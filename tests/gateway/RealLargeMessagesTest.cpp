@@ -28,8 +28,8 @@ using namespace std::chrono_literals;
 using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
 
 constexpr std::uint32_t Senders = 3;
-constexpr std::uint32_t Messages = 100;  // of each
-constexpr std::size_t Bytes = 60'000;    // all of one size, so that the size tells none apart
+constexpr std::uint32_t LargeMessages = 100;  // of each
+constexpr std::size_t Bytes = 60'000;         // all of one size, so that the size tells none apart
 constexpr int Places = 20;
 
 std::string TextOf(std::uint32_t sender, std::uint32_t message)
@@ -51,7 +51,7 @@ public:
 
     void ExecuteUnitOfWork() final
     {
-        while (_receipts.size() < Messages)
+        while (_receipts.size() < LargeMessages)
         {
             auto message = std::make_shared<GatewayTest::Contact>();
             const auto next = static_cast<std::uint32_t>(_receipts.size());
@@ -171,7 +171,7 @@ TEST_P(RealLargeMessagesTest, OfSeveralNodesForOneFullQueueArriveOnceAndInOrder)
     for (std::future<std::ptrdiff_t> &delivered : outcomes)
     {
         ASSERT_EQ(delivered.wait_for(RabitTest::Hangs), std::future_status::ready);
-        EXPECT_EQ(delivered.get(), Messages);
+        EXPECT_EQ(delivered.get(), LargeMessages);
     }
 }
 
