@@ -4,8 +4,8 @@
 # configures: if two files of a batch define the same name later, the compiler says "redefinition"; then run
 # cmake again.
 set(RABIT_UNITY "" CACHE STRING "Folders, relative to the project's, in which several files of a target are compiled as one")
-set(RABIT_UNITY_MOST 12 CACHE STRING "How many files are compiled as one, at most")
-mark_as_advanced(RABIT_UNITY_MOST)
+set(RABIT_UNITY_SIZE 12 CACHE STRING "About how many files are compiled as one")
+mark_as_advanced(RABIT_UNITY_SIZE)
 set(RABIT_UNITY_FOLDER ${CMAKE_CURRENT_LIST_DIR})
 
 # rabit_list_units(<folder> <list>) appends the sources of all targets in the folders asked for to a file.
@@ -26,8 +26,11 @@ function(rabit_list_units folder list)
     endif()
     get_target_property(sources ${target} SOURCES)
     foreach(source IN LISTS sources)
-      # Skips generated sources, which may not exist yet, and objects of other targets.
-      if(source MATCHES "\\.cpp$" AND NOT IS_ABSOLUTE ${source})
+      # Skips objects of other targets, and generated sources, which may not exist yet. Those of messages define names
+      # of their own types alone.
+      cmake_path(ABSOLUTE_PATH source BASE_DIRECTORY ${folder} OUTPUT_VARIABLE file)
+      cmake_path(IS_PREFIX PROJECT_BINARY_DIR ${file} is_generated)
+      if(source MATCHES "\\.idl\\.cpp$" OR (source MATCHES "\\.cpp$" AND NOT is_generated))
         file(APPEND ${list} "${target}\t${folder}\t${source}\n")
       endif()
     endforeach()
@@ -46,7 +49,7 @@ function(rabit_compile_together)
   set(list ${PROJECT_BINARY_DIR}/units.txt)
   file(WRITE ${list} "")
   rabit_list_units(${PROJECT_SOURCE_DIR} ${list})
-  execute_process(COMMAND ${Python3_EXECUTABLE} ${RABIT_UNITY_FOLDER}/batches.py ${RABIT_UNITY_MOST} ${list}
+  execute_process(COMMAND ${Python3_EXECUTABLE} ${RABIT_UNITY_FOLDER}/batches.py ${RABIT_UNITY_SIZE} ${list}
                   OUTPUT_FILE ${PROJECT_BINARY_DIR}/batches.cmake COMMAND_ERROR_IS_FATAL ANY)
   include(${PROJECT_BINARY_DIR}/batches.cmake)
 endfunction()

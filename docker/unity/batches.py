@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Says which sources of a target are compiled together, as one unit.
 
-Usage: batches.py MOST LIST
+Usage: batches.py SIZE LIST
 LIST has one line for each source: its target, its folder in the source tree, and its path, separated by tabs. Prints
-CMake commands that give the sources their UNITY_GROUP, each group with MOST sources at most.
+CMake commands that give the sources their UNITY_GROUP, each group with about SIZE sources.
 
 What is in an anonymous namespace, and a name that is `static`, is a file's own; two files of one unit must not have the
 same in one namespace. So sources that define a name alike are put into different groups, those that use a name which another one
@@ -33,12 +33,14 @@ class Source:
         text = IGNORED.sub(lambda found: " " + "\n" * found.group().count("\n"), text)
         self.macros = set(re.findall(r"^[ \t]*#[ \t]*define[ \t]+(\w+)", text, re.M))
         self.mentioned = set(IDENTIFIER.findall(text))
-        # Those of a function, which are indented, end with it.
-        self.directives = set(re.findall(r"^(?:namespace\b[^\n]*)?using\s+namespace\s+([\w:]+)", text, re.M))
+        # Those of a function, which are indented, end with it; literals have no names that could mean something else.
+        self.directives = set(re.findall(r"^(?:namespace\b[^\n]*)?using\s+namespace\s+((?!std::\w*literals\b)[\w:]+)", text, re.M))
         # The names that `using` brings in: last part to full name.
-        self.brought = dict((name.split("::")[-1], name) for name in re.findall(r"\busing\s+([\w:]+::\w+)\s*;", text))
+        self.brought = dict((name.split("::")[-1], name.removeprefix("::"))
+                            for name in re.findall(r"\busing\s+([\w:]+::\w+)\s*;", text))
         self.defined = set()  # names with their namespaces; one without a name does not count
         self.names = set()  # the same names alone
+        self.aliases = {}  # what those of the defined names stand for that are aliases of types or namespaces
         self.namespaces = []  # where the reader is
         self.read(TOKEN.findall(DIRECTIVE.sub(" ", text)))
 
@@ -73,8 +75,11 @@ class Source:
             at += 1
 
     def add(self, name):
+        """Returns the name with its namespaces."""
         self.names.add(name)
-        self.defined.add("::".join([one for one in self.namespaces if one] + [name]))
+        full = "::".join([one for one in self.namespaces if one] + [name])
+        self.defined.add(full)
+        return full
 
     @staticmethod
     def skip(tokens, at):
@@ -91,14 +96,18 @@ class Source:
         return "(" in statement and "=" not in statement and not KINDS & set(statement[:1])
 
     def define(self, statement):
-        words = without_template([word for word in statement if not word.startswith("[[")])
+        words = [word for word in statement if not word.startswith("[[")]
+        is_template = words[:1] == ["template"]
+        words = without_template(words)
         if not words or words[0] == ",":  # the rest of a constructor's initializers
             return
         if GTEST.match(words[0]) and words[1:2] == ["("]:
             self.add("_".join(word for word in words[2:words.index(")")] if word != ",") + "_Test")
-        elif words[0] == "using":
-            if "namespace" not in words and "=" in words:
-                self.add(words[1])
+        elif words[0] in ("using", "namespace"):
+            if words[2:3] == ["="]:
+                name = self.add(words[1])
+                if not is_template:
+                    self.aliases[name] = words[2:]
         elif words[0] in KINDS:
             name = next((word for word in words[1:] if IDENTIFIER.fullmatch(word) and word not in KINDS), None)
             if name and words[-1] != name:  # not a mere declaration
@@ -129,7 +138,11 @@ class Source:
             return False
         if self.names & set(other.brought) or set(self.brought) & other.names:
             return False
-        return not (self.defined & other.defined or self.macros & other.mentioned or other.macros & self.mentioned)
+        # The same alias twice is no error.
+        if any(name not in self.aliases or self.aliases[name] != other.aliases.get(name)
+               for name in self.defined & other.defined):
+            return False
+        return not (self.macros & other.mentioned or other.macros & self.mentioned)
 
 
 def without_template(words):
@@ -158,8 +171,19 @@ def batches(sources, most):
     return groups
 
 
+def size(count, about):
+    """How many of the sources of a target are compiled as one: the groups are of one size, so that no source is left over."""
+    groups = max(1, round(count / about))
+    return -(-count // groups)
+
+
+def source_of(path):
+    # Generated messages define names of their own types alone, and may not exist yet.
+    return Source("" if path.name.endswith(".idl.cpp") else path.read_text())
+
+
 def main():
-    most = int(sys.argv[1])
+    about = int(sys.argv[1])
     targets = {}
     for line in pathlib.Path(sys.argv[2]).read_text().splitlines():
         target, folder, path = line.split("\t")
@@ -171,9 +195,8 @@ def main():
     for (target, folder), paths in targets.items():
         # UNITY_GROUP is a property of a source in a folder, so a source shared by several targets of that
         # folder gets no group.
-        own = {path: Source((pathlib.Path(folder) / path).read_text()) for path in paths
-               if len(owners[folder, path]) == 1}
-        grouped = [group for group in batches(own, most) if len(group) > 1]
+        own = {path: source_of(pathlib.Path(folder) / path) for path in paths if len(owners[folder, path]) == 1}
+        grouped = [group for group in batches(own, size(len(own), about)) if len(group) > 1]
         for number, group in enumerate(grouped):
             files = " ".join(f'"{pathlib.Path(folder) / path}"' for path in group)
             print(f"set_property(SOURCE {files} TARGET_DIRECTORY {target} PROPERTY UNITY_GROUP {number})")

@@ -1,5 +1,8 @@
 #include "SourceEmitter.h"
 
+#include <algorithm>
+#include <cctype>
+
 #include "CppText.h"
 #include "UnionEmitter.h"
 #include "model/IdlTextEmitter.h"
@@ -384,10 +387,14 @@ void EmitDefinition(TextBuilder &out, const Model &model, const Definition &defi
 
 void EmitRegistration(TextBuilder &out, const Model &model)
 {
+    // Named after the file, since several generated sources may be compiled as one.
+    std::string name = "areRegistered_" + model.MainFile;
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
     out.Line("namespace Rabit::Idl");
     out.Line("{");
     out.Line("// Runs before main(), so that the types can be found by name.");
-    out.Line("[[maybe_unused]] static const bool areRegistered = []");
+    out.Line("[[maybe_unused]] static const bool " + name + " = []");
     out.Open();
     for (const auto &definition : model.Definitions)
     {

@@ -67,9 +67,23 @@ class Batches(unittest.TestCase):
     def test_hold_no_more_than_is_said(self):
         self.assertEqual(self.batches(2, a="", b="", c=""), [["a", "b"], ["c"]])
 
+    def test_are_of_one_size_so_that_no_source_is_left_over(self):
+        self.assertEqual([batches.size(count, 12) for count in (1, 12, 13, 17, 18, 25, 55, 100)], [1, 12, 13, 17, 9, 13, 11, 13])
+
     def test_have_each_name_once(self):
         same = "namespace { int Same() { return 1; } }"
         self.assertEqual(self.batches(9, a=same, b=same, c="int Other() { return 1; }"), [["a", "c"], ["b"]])
+
+    def test_may_have_one_alias_in_each_file(self):
+        for alias in ("using", "namespace"):
+            self.assertEqual(self.batches(9, a=f"namespace {{ {alias} Short = A::Long; }}",
+                                          b=f"namespace {{ {alias} Short = A::Long; }}",
+                                          c=f"namespace {{ {alias} Short = B::Long; }}",
+                                          d="namespace { struct Short { int x; }; }"), [["a", "b"], ["c"], ["d"]])
+
+    def test_have_each_template_of_an_alias_once(self):
+        text = "namespace { template <typename T> using Many = std::vector<T>; }"
+        self.assertEqual(self.batches(9, a=text, b=text), [["a"], ["b"]])
 
     def test_may_have_one_name_in_different_namespaces(self):
         def named(name):
@@ -83,8 +97,12 @@ class Batches(unittest.TestCase):
         self.assertEqual(self.batches(9, a="using namespace A;\n", b="namespace B { using namespace B::C; }\n", c="",
                                       d="using namespace A;\n"), [["a", "c", "d"], ["b"]])
 
+    def test_may_have_literals_in_some_files_alone(self):
+        self.assertEqual(self.batches(9, a="using namespace A;\nusing namespace std::chrono_literals;\n", b="using namespace A;\n",
+                                      c="using namespace std::literals;\n"), [["a", "b", "c"]])
+
     def test_keep_a_name_that_is_brought_in_from_another_of_its_kind(self):
-        self.assertEqual(self.batches(9, a="using A::Same;\n", b="using A::Same;\n", c="using C::Same;\n",
+        self.assertEqual(self.batches(9, a="using A::Same;\n", b="using ::A::Same;\n", c="using C::Same;\n",
                                       d="namespace { struct Same { int x; }; }\n"), [["a", "b"], ["c"], ["d"]])
 
     def test_are_told_to_cmake_unless_several_targets_share_the_source(self):
@@ -94,12 +112,16 @@ class Batches(unittest.TestCase):
                 (folder / name).write_text("")
             units = folder / "units.txt"
             units.write_text("".join(f"{target}\t{folder}\t{name}\n" for target, name in (
-                ("one", "A.cpp"), ("one", "B.cpp"), ("one", "Shared.cpp"), ("two", "Shared.cpp"))))
+                ("one", "A.cpp"), ("one", "B.cpp"), ("one", "Shared.cpp"), ("two", "Shared.cpp"),
+                ("three", f"{folder}/generated/a.idl.cpp"), ("three", f"{folder}/generated/b.idl.cpp"))))
             said = subprocess.run([sys.executable, str(ROOT / "docker/unity/batches.py"), "9", str(units)],
                                   capture_output=True, text=True, check=True).stdout
         self.assertEqual(said.splitlines(), [
             f'set_property(SOURCE "{folder}/A.cpp" "{folder}/B.cpp" TARGET_DIRECTORY one PROPERTY UNITY_GROUP 0)',
-            "set_target_properties(one PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)"])
+            "set_target_properties(one PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)",
+            f'set_property(SOURCE "{folder}/generated/a.idl.cpp" "{folder}/generated/b.idl.cpp" TARGET_DIRECTORY three '
+            "PROPERTY UNITY_GROUP 0)",
+            "set_target_properties(three PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)"])
 
 
 if __name__ == "__main__":
