@@ -10,8 +10,8 @@ namespace
 namespace http = boost::beast::http;
 using testing::HasSubstr;
 
-const Ground::PageFile Files[] = {{"/", "text/html; charset=utf-8", "<p>page</p>"},
-                                  {"/a.js", "text/javascript; charset=utf-8", "let a;"}};
+const Ground::PageFile AnsweredFiles[] = {{"/", "text/html; charset=utf-8", "<p>page</p>"},
+                                          {"/a.js", "text/javascript; charset=utf-8", "let a;"}};
 
 class HttpAnswer : public testing::Test
 {
@@ -27,7 +27,7 @@ protected:
     }
     Ground::HttpResponse Answer(const Ground::HttpRequest &request)
     {
-        return Ground::AnswerHttp(request, Files, _pictures, _guard);
+        return Ground::AnswerHttp(request, AnsweredFiles, _pictures, _guard);
     }
     Ground::HttpResponse Get(const std::string &target) { return Answer(Request(http::verb::get, target)); }
 };

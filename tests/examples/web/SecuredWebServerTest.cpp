@@ -4,6 +4,7 @@
 #include "../../Eventually.h"
 #include "../../core/CapturedLog.h"
 #include "PageClient.h"
+#include "RawClient.h"
 
 #include <boost/asio/read.hpp>
 #include <boost/asio/ssl.hpp>
@@ -14,7 +15,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <random>
 #include <string>
@@ -27,6 +27,7 @@ using namespace std::chrono_literals;
 using boost::asio::ip::tcp;
 using Ground::WebServer;
 using GroundTest::PageClient;
+using GroundTest::RawClient;
 using RabitTest::Eventually;
 using testing::AllOf;
 using testing::HasSubstr;
@@ -34,37 +35,8 @@ using testing::Not;
 using testing::Optional;
 using testing::StartsWith;
 
-const Ground::PageFile Files[] = {{"/", "text/html; charset=utf-8", "<p>page</p>"},
-                                  {"/a.js", "text/javascript; charset=utf-8", "let a;"}};
-
-// A connection without TLS that sends any bytes.
-class RawClient
-{
-public:
-    explicit RawClient(const tcp::endpoint &server, const char *from = "127.0.0.1")
-    {
-        _socket.open(tcp::v4());
-        _socket.bind({boost::asio::ip::make_address(from), 0});
-        _socket.connect(server);
-    }
-    void Send(const std::string &bytes)
-    {
-        boost::system::error_code ignored;
-        boost::asio::write(_socket, boost::asio::buffer(bytes), ignored);
-    }
-    std::string Rest()
-    {
-        std::string text;
-        boost::system::error_code error;
-        boost::asio::read(_socket, boost::asio::dynamic_buffer(text), error);
-        return text;
-    }
-    tcp::socket &Socket() { return _socket; }
-
-private:
-    boost::asio::io_context _io;
-    tcp::socket _socket{_io};
-};
+const Ground::PageFile SecuredFiles[] = {{"/", "text/html; charset=utf-8", "<p>page</p>"},
+                                         {"/a.js", "text/javascript; charset=utf-8", "let a;"}};
 
 // A client that speaks TLS, and accepts every certificate.
 class TlsClient
@@ -118,7 +90,7 @@ protected:
     void SetUp() override { _settings.Secrets = Ground::MakeWebSecrets({{"field"}, {}}, std::time(nullptr)); }
     void Start()
     {
-        _server = std::make_unique<WebServer>(_settings, Files);
+        _server = std::make_unique<WebServer>(_settings, SecuredFiles);
         _server->Start([](const std::string &text) { return "reply to " + text; });
     }
     tcp::endpoint Endpoint() const { return _server->Endpoint(); }
@@ -408,7 +380,7 @@ TEST_F(SecuredWebServerTest, SaysInOneLineThatItCannotServeWithACertificate)
     _settings.Secrets->Certificate = "nonsense";
     try
     {
-        const WebServer server(_settings, Files);
+        const WebServer server(_settings, SecuredFiles);
         FAIL() << "it serves with nonsense";
     }
     catch (const Ground::WebServerError &error)

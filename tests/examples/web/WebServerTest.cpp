@@ -3,15 +3,12 @@
 #include "../../Eventually.h"
 #include "../../core/CapturedLog.h"
 #include "PageClient.h"
-
-#include <boost/asio/read.hpp>
-#include <boost/asio/write.hpp>
+#include "RawClient.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -24,6 +21,7 @@ using namespace std::chrono_literals;
 using boost::asio::ip::tcp;
 using Ground::WebServer;
 using GroundTest::PageClient;
+using GroundTest::RawClient;
 using RabitTest::Eventually;
 using testing::HasSubstr;
 using testing::Optional;
@@ -35,31 +33,6 @@ std::shared_ptr<const std::string> Text(std::string text)
 {
     return std::make_shared<const std::string>(std::move(text));
 }
-
-// A plain connection that sends any bytes.
-class RawClient
-{
-public:
-    explicit RawClient(const tcp::endpoint &server) { _socket.connect(server); }
-    // The server may have closed the connection already.
-    void Send(const std::string &text)
-    {
-        boost::system::error_code ignored;
-        boost::asio::write(_socket, boost::asio::buffer(text), ignored);
-    }
-    // Returns all that comes until the server closes.
-    std::string Rest()
-    {
-        std::string text;
-        boost::system::error_code error;
-        boost::asio::read(_socket, boost::asio::dynamic_buffer(text), error);
-        return text;
-    }
-
-private:
-    boost::asio::io_context _io;
-    tcp::socket _socket{_io};
-};
 
 class WebServerTest : public testing::Test
 {
