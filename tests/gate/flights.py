@@ -37,8 +37,8 @@ class Flight:
         self._deadline = options.deadline
         arguments = {node: [*ORDERED, *self._destinations(node), *self._keys(node, keys)] for node in transports}
         self.fleet = run_scenario.Fleet(ground, options.ledger_node, None,
-                                        {"nodes": arguments, "transports": transports}, outcomes.Sight)
-        self.sights = self.fleet.ends
+                                        {"nodes": arguments, "transports": transports})
+        self.sights = self.fleet.sights
         self.ordered = collections.Counter()  # commands of the newest life, to each other node
         self.states = collections.Counter()
 
@@ -187,7 +187,7 @@ def keyed(flight):
     for _ in range(ROUNDS):
         flight.exchange()
         flight.exchange(flight.strangers)
-    wrong = outcomes.strayed(flight.sights, flight.nodes, flight.strangers)
+    wrong = outcomes.strayed(flight.sights, [flight.nodes, flight.strangers])
     if wrong:
         raise Failure("nothing to pass between nodes with keys and nodes without", "; ".join(wrong))
 

@@ -5,7 +5,8 @@ import pathlib
 import tempfile
 import unittest
 
-import outcomes
+import outcomes  # also makes the modules of ../integration known
+from sight import Sight
 
 NODES = ["a", "b"]
 
@@ -38,7 +39,7 @@ class OutcomesTest(unittest.TestCase):
         path = pathlib.Path(self._folder.name, node)
         with open(path, "a", encoding="utf-8") as file:
             file.writelines(line + "\n" for line in lines)
-        self.sights.setdefault(node, outcomes.Sight(path)).read()
+        self.sights.setdefault(node, Sight(path)).read()
 
     def both(self, *more):
         """Two nodes that have met; `more`: further lines of a."""
@@ -60,13 +61,13 @@ class OutcomesTest(unittest.TestCase):
         self.write("a", begun("a"), *met("b"))
         self.write("b", begun("b"), "2 state_posted message=State0 number=1")
         self.assertEqual(outcomes.not_met(self.sights, NODES), ["b shows a not at all", "b has no pose of this life of a",
-                                                                "b has no State of this life of a"])
+                                                                "b has no State0 of this life of a"])
 
     def test_a_pose_and_a_state_of_an_earlier_life(self):
         self.both()
         self.write("b", begun("b", 50), *met("a", 51))
         self.assertEqual(outcomes.not_met(self.sights, NODES),
-                         ["a has no pose of this life of b", "a has no State of this life of b"])
+                         ["a has no pose of this life of b", "a has no State0 of this life of b"])
 
     def test_a_killed_node_has_not_met_until_it_lives_again(self):
         self.both()
@@ -79,7 +80,7 @@ class OutcomesTest(unittest.TestCase):
     def test_an_old_state(self):
         self.both()
         self.write("b", "12 state_posted message=State0 number=2")
-        self.found("a shows State 1 of b, which posted 2", outcomes.old_states(self.sights, NODES))
+        self.found("a shows State0 1 of b, which posted 2", outcomes.old_states(self.sights, NODES))
 
     def test_a_post_that_was_ordered(self):
         self.both()
@@ -117,13 +118,13 @@ class OutcomesTest(unittest.TestCase):
             self.sights.pop("s", None)
             pathlib.Path(self._folder.name, "s").unlink(missing_ok=True)
             self.write("s", begun("s"), *met("t"))
-            self.assertEqual(outcomes.strayed(self.sights, NODES, ["s"]), [])
+            self.assertEqual(outcomes.strayed(self.sights, [NODES, ["s"]]), [])
             self.write("s", line)
-            self.assertEqual(outcomes.strayed(self.sights, NODES, ["s"]), ["s heard of a"])
+            self.assertEqual(outcomes.strayed(self.sights, [NODES, ["s"]]), ["s heard of a"])
         self.write("a", "61 delivered from=s life=1 id=1 octets=1")
-        self.assertEqual(outcomes.strayed(self.sights, NODES, ["s"]), ["a heard of s", "s heard of a"])
+        self.assertEqual(outcomes.strayed(self.sights, [NODES, ["s"]]), ["a heard of s", "s heard of a"])
         self.write("a", begun("a", 70))
-        self.assertIn("a heard of s", outcomes.strayed(self.sights, NODES, ["s"]))
+        self.assertIn("a heard of s", outcomes.strayed(self.sights, [NODES, ["s"]]))
 
 
 if __name__ == "__main__":

@@ -30,12 +30,24 @@ void Orders::Read()
 
 void Orders::Add(const std::string &line)
 {
+    if (line == "take")
+    {
+        _mayTake = true;
+        return;
+    }
+    if (line == "return")
+    {
+        _mayReturn = true;
+        _mayReturn.notify_all();
+        return;
+    }
     std::istringstream words(line);
     std::string what;
     std::uint64_t count = 0;
     if (!(words >> what >> count) || (what != "notes" && what != "states"))
     {
-        throw std::runtime_error("not an order: '" + line + "'; write 'notes N' or 'states N'");
+        throw std::runtime_error("not an order: '" + line +
+                                 "'; write 'notes N', 'states N', 'take' or 'return'");
     }
     (what == "notes" ? _notes : _states) += count;
 }

@@ -8,7 +8,7 @@ namespace TestNode
 {
 
 // Orders of a test to a running node, by lines on standard input: `notes N` and `states N` add N notes to
-// each destination, and N posts of each State.
+// each destination, and N posts of each State. `take` and `return` end what holds up notes and a handler.
 class Orders
 {
 public:
@@ -18,6 +18,9 @@ public:
 
     std::uint64_t Notes() const { return _notes; }
     std::uint64_t States() const { return _states; }
+    bool MayTake() const { return _mayTake; }
+    // Returns after the order `return`. Any thread but that of Read().
+    void AwaitReturn() const { _mayReturn.wait(false); }
 
 private:
     void Add(const std::string &line);
@@ -26,6 +29,8 @@ private:
     bool _ended = false;
     std::atomic<std::uint64_t> _notes = 0;
     std::atomic<std::uint64_t> _states = 0;
+    bool _mayTake = false;
+    std::atomic<bool> _mayReturn = false;
 };
 
 }  // namespace TestNode

@@ -39,7 +39,6 @@ class DockerField:
         self.processes = {}
         self._engine = engine
         self._faulty = set()
-        self._pids = {}  # node -> of its container's first process
 
     def __enter__(self):
         # The nodes run as another user and write here.
@@ -62,20 +61,7 @@ class DockerField:
         else:
             self.console("run", node, *argv)
             self.processes[node] = Container(self, node)
-        pid = self._engine.run("docker", "inspect", "--format", "{{.State.Pid}}", f"{self._engine.mark}-{node}").strip()
-        self._pids[node] = int(pid)
         return self.processes[node]
-
-    def pids(self):
-        """Of the first process of each container and its children, as this machine counts them."""
-        found = []
-        for pid in list(self._pids.values()):
-            found.append(pid)
-            try:
-                found += map(int, pathlib.Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split())
-            except OSError:
-                pass  # the container has ended
-        return found
 
     def kill(self, node):
         self.console("kill", node)

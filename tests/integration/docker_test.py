@@ -151,13 +151,8 @@ def main():
                 scenario = json.loads((HERE / "scenarios" / name / "scenario.json").read_text())
                 options = argparse.Namespace(ledger_node="ledger_node", transports=transports, keep=None)
                 print(f"scenario {name}")
-
-                def fly(scenario=scenario, options=options):
-                    with docker_field.DockerField(engine, scenario["nodes"]) as ground:
-                        return run_scenario.run_in(ground, scenario, options)
-
-                wrong = run_scenario.repeated(fly)
-                failed += [f"{name}: {text}" for text in wrong]
+                with docker_field.DockerField(engine, scenario["nodes"]) as ground:
+                    failed += [f"{name}: {text}" for text in run_scenario.run_in(ground, scenario, options)]
     for text in failed[:50]:
         print("WRONG " + text)
     sys.exit(1 if failed else 0)

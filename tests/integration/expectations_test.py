@@ -1,44 +1,36 @@
 #!/usr/bin/env python3
 """Expectations find what is wrong, and have nothing against what is right."""
 
+import pathlib
+import tempfile
+import types
 import unittest
 
 import expectations
 import judge
+import run_scenario
+import sight
 
 S = 1_000_000_000
 
 
-def run(faults=(), **ledgers):
+def ledger(node, lines, begin=1):
+    return "".join([f"{begin * S} start node={node} life={begin} room=5\n"] + [f"{int(at * S)} {rest}\n" for at, rest in lines])
+
+
+def run(**ledgers):
     """`ledgers`: for each node the lines of one life, (second, rest)"""
-    made = expectations.Run({}, list(faults))
-    made.lives = {node: judge.read_ledger([f"{S} start node={node} life=1 room=5\n"]
-                                          + [f"{int(at * S)} {rest}\n" for at, rest in lines])
-                  for node, lines in ledgers.items()}
-    made.ended = 100
+    made = expectations.Run({}, [])
+    made.lives = {node: judge.read_ledger(ledger(node, lines)) for node, lines in ledgers.items()}
     return made
-
-
-def busy(made, begin, end, seconds):
-    """The machine took so many seconds of those between begin and end, evenly."""
-    made.waited = lambda first, last: seconds * max(0, min(last, end) - max(first, begin)) / (end - begin)
-    return made
-
-
-def taken(*times):
-    return [(at, f"delivered from=a life=1 id={number}") for number, at in enumerate(times, 1)]
-
-
-def accepted(*times):
-    return [(at, f"accepted to=b id={number}") for number, at in enumerate(times, 1)]
 
 
 class AgesTest(unittest.TestCase):
     POSTED = [(10, "state_posted message=State0 number=1")]
 
-    def ages(self, shown_s, at=10.5, waited=(0, 1, 0)):
-        seen = [(at, f"state from=a message=State0 number=1 age_s={shown_s}")]
-        return expectations.honest_ages(busy(run(a=self.POSTED, b=seen), *waited), 0.1)
+    def ages(self, shown_s):
+        seen = [(10.5, f"state from=a message=State0 number=1 age_s={shown_s}")]
+        return expectations.honest_ages(run(a=self.POSTED, b=seen), 0.1)
 
     def test_accepts_a_right_age(self):
         self.assertEqual(self.ages(0.45), [])
@@ -49,144 +41,145 @@ class AgesTest(unittest.TestCase):
     def test_finds_an_age_that_is_too_large(self):
         self.assertEqual(len(self.ages(3600.5)), 1)
 
-    def test_accepts_an_age_that_is_too_small_by_what_the_machine_took_before_the_line(self):
-        self.assertEqual(self.ages(0.3, waited=(10, 10.5, 0.2)), [])
-
-    def test_finds_an_age_that_is_too_small_though_the_machine_was_busy_before(self):
-        self.assertEqual(len(self.ages(19, at=30, waited=(11, 28, 20))), 1)
-
-    def test_finds_an_age_that_is_too_large_though_the_machine_is_busy(self):
-        self.assertEqual(len(self.ages(0.7, waited=(10, 10.5, 5))), 1)
-
     def test_finds_a_node_whose_states_are_never_seen(self):
         self.assertEqual(expectations.honest_ages(run(a=self.POSTED, b=[]), 0.1), ["b saw no State of a"])
 
 
-class TurnsTest(unittest.TestCase):
-    def test_accepts_a_pause_in_which_nothing_waits(self):
-        self.assertEqual(expectations.starved_at_most(run(a=accepted(2, 20), b=taken(3, 21)), 5), [])
+class LastStatesTest(unittest.TestCase):
+    POSTED = [(10, "state_posted message=State0 number=1"), (11, "state_posted message=State0 number=2")]
 
-    def test_finds_a_sender_without_a_turn(self):
-        self.assertEqual(expectations.starved_at_most(run(a=accepted(2, 3), b=taken(3, 21)), 5),
-                         ["a to b: 18.0 s without a turn, at most 5 s wanted"])
+    def shown(self, *numbers, posted=True):
+        seen = [(2, "peer node=a state=UP")] + [(12 + at, f"state from=a message=State0 number={number} age_s=0")
+                                                for at, number in enumerate(numbers)]
+        return expectations.last_states(run(a=self.POSTED if posted else [], b=seen), True)
 
+    def test_accepts_the_last_one_whichever_came_before(self):
+        self.assertEqual(self.shown(1, 2), [])
+        self.assertEqual(self.shown(2), [])
+        self.assertEqual(self.shown(posted=False), [])
 
-    def test_leaves_out_the_time_that_the_machine_took(self):
-        fleet = run(a=accepted(2, 3), b=taken(3, 21))
-        self.assertEqual(expectations.starved_at_most(busy(fleet, 3, 21, 14), 5), [])
-        self.assertEqual(len(expectations.starved_at_most(busy(fleet, 3, 21, 12), 5)), 1)
+    def test_finds_an_older_one_at_the_end(self):
+        self.assertEqual(self.shown(1), ["b and State0 of a: shows 1 at the end, not 2"])
+        self.assertEqual(self.shown(), ["b and State0 of a: shows nothing at the end, not 2"])
 
-
-class CutTest(unittest.TestCase):
-    FAULTS = [(10, "cut", ["a"]), (20, "heal", [])]
-    CUT = (2, "UP"), (11.5, "STALE"), (13.5, "LOST")
-
-    def timely(self, *said, notes=(), ended=100, waited=(20, 30, 0)):
-        made = run(self.FAULTS, a=[(at, f"intent to=b id={number}") for number, at in enumerate(notes, 1)],
-                   b=[(at, f"peer node=a state={state}") for at, state in said] + taken(*notes))
-        made.ended = ended
-        return expectations.timely(busy(made, *waited), "b")
-
-    def test_accepts_a_cut_and_a_return_that_are_seen_soon(self):
-        self.assertEqual(self.timely(*self.CUT, (22, "UP"), notes=(3, 22)), [])
-
-    def test_finds_a_cut_that_is_never_seen(self):
-        self.assertEqual(len(self.timely((2, "UP"))), 3)
-
-    def test_finds_a_cut_that_is_never_seen_on_a_busy_machine(self):
-        self.assertEqual(len(self.timely((2, "UP"), (22, "UP"), waited=(10, 20, 40))), 2)
-
-    def test_finds_a_node_that_is_never_up_again_in_a_run_that_ends_soon(self):
-        self.assertEqual(self.timely(*self.CUT, ended=26), ["a cut for 10 s: b saw it UP never, at most 15.0 s wanted"])
-
-    def test_finds_a_link_that_never_delivers_again_in_a_run_that_ends_soon(self):
-        self.assertEqual(self.timely(*self.CUT, (22, "UP"), notes=(3,), ended=26),
-                         ["a cut for 10 s: first note from a to b never, at most 15.0 s wanted"])
-
-    def test_finds_a_return_that_is_late_by_more_than_the_machine_took(self):
-        late = *self.CUT, (40, "UP")
-        self.assertEqual(len(self.timely(*late)), 1)
-        self.assertEqual(len(self.timely(*late, waited=(20, 30, 4))), 1)
-        self.assertEqual(self.timely(*late, waited=(20, 30, 6)), [])
+    def test_finds_one_that_goes_back(self):
+        self.assertEqual(self.shown(2, 1, 2), ["b and State0 of a: went back: [2, 1, 2]"])
 
 
-class TicksTest(unittest.TestCase):
-    def test_counts_from_when_the_last_of_several_losses_was_made(self):
-        seen = [(at, f"tick from=b number={at}") for at in range(2, 20)]
-        seen += [(at, f"tick from=b number={at}") for at in range(20, 100, 2)]
-        lossy = run([(4, "lose", [20, ["c"]]), (9, "lose", [50, ["b"]]), (19, "wait", [80])], a=seen, b=[])
-        share, span, taken = lossy.share_of_ticks("a", "b")
-        self.assertEqual((round(share, 1), span, taken), (0.5, 79, 0))
+class RefusalsTest(unittest.TestCase):
+    def refused(self, accepted, refused=1):
+        lines = [(2, "refused to=b id=0")] + [(3, "accepted to=b id=1")] * accepted + [(4, "refused to=b id=2")] * refused
+        return expectations.refusals_from(run(a=lines, b=[]), {"a to b": [2, 3]})
 
-    def ticks(self, waited_s):
-        seen = [(2 + number / 10, f"tick from=b number={number}") for number in range(0, 100) if number % 5]
-        return expectations.ticks(busy(run(a=seen, b=seen[:1]), 2, 12, waited_s), {"a": 0})
+    def test_accepts_a_first_refusal_within_the_bounds(self):
+        self.assertEqual(self.refused(2) + self.refused(3), [])
 
-    def test_finds_ticks_that_are_missing(self):
-        self.assertTrue(any("a saw 81 % of" in text for text in self.ticks(0)), self.ticks(0))
-
-    def test_accepts_as_many_missing_as_the_machine_took(self):
-        self.assertEqual([text for text in self.ticks(1.5) if "%" in text], [])
+    def test_finds_an_early_a_late_and_a_missing_refusal(self):
+        self.assertEqual(self.refused(1), ["a to b: refused after 1 accepted, 2 to 3 wanted"])
+        self.assertEqual(self.refused(4), ["a to b: refused after 4 accepted, 2 to 3 wanted"])
+        self.assertEqual(self.refused(2, 0), ["a to b: nothing refused, 2 to 3 wanted"])
 
 
 class WordsTest(unittest.TestCase):
+    SAID = 'problem node=a subject="a" reason="two live nodes have this name"'
+
     def test_finds_a_problem_by_its_words(self):
-        seen = run(b=[(2, 'problem node=a subject="a" reason="two live nodes have this name"')])
+        seen = run(b=[(2, self.SAID)])
         self.assertEqual(len(expectations.no_problem(seen, ["this name"])), 1)
         self.assertEqual(expectations.no_problem(seen, ["no announcement"]), [])
 
 
-class BeginningTest(unittest.TestCase):
-    def begin(self, *seen, waited_s=0):
-        """a starts at 1 s and again at 10 s, and sees b; b has seen ticks of a at these times."""
-        made = run(b=[(at, f"tick from=a number=1 age_s=0") for at in seen], a=[(2, "tick from=b number=1 age_s=0")])
-        made.lives["a"] += judge.read_ledger([f"{10 * S} start node=a life=10 room=5\n"])
-        made.lives["b"][0].begin = 0
-        return expectations.ticks_begin_within(busy(made, 10, 100, waited_s), 1.5)
+class AwaitedTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = pathlib.Path(folder.name, "b")
 
-    def test_accepts_a_life_that_is_seen_soon(self):
-        self.assertEqual(self.begin(1.4, 11.4), [])
+    def awaited(self, wanted, *lines):
+        self.path.write_text(ledger("b", lines), encoding="utf-8")
+        one = sight.Sight(self.path)
+        one.read()
+        return expectations.awaited({"b": one}, wanted)
 
-    def test_finds_a_life_that_is_seen_late(self):
-        self.assertEqual(self.begin(1.4, 9, 11.6), ["b saw no tick of a within 1.5 s after its start"])
+    def test_a_problem_is_awaited_until_it_is_reported(self):
+        wanted = {"problems": {"b": "have this name"}}
+        self.assertEqual(self.awaited(wanted), ["b did not report 'have this name', but []"])
+        self.assertEqual(self.awaited(wanted, (2, WordsTest.SAID)), [])
 
-    def test_finds_a_life_that_is_never_seen_on_a_busy_machine(self):
-        self.assertEqual(self.begin(1.4, 9, waited_s=200), ["b saw no tick of a within 1.5 s after its start"])
+    def test_a_foreign_sample_is_awaited_until_it_is_counted(self):
+        wanted = {"foreign_refused": ["b"]}
+        for values in ("from= undecodable=0 refused=0", "from=a undecodable=0 refused=3"):
+            self.assertEqual(len(self.awaited(wanted, (2, f"topic message=Tick {values}"))), 1)
+        self.assertEqual(self.awaited(wanted, (2, "topic message=Tick from= undecodable=0 refused=1")), [])
 
-
-class ReturnTest(unittest.TestCase):
-    FAULTS = [(10, "kill", ["a"]), (11, "start", ["a"])]
-
-    def back(self, *said):
-        return expectations.back_within(run(self.FAULTS, a=[], b=[(at, f"peer node=a state={state}") for at, state in said]), 4)
-
-    def test_accepts_a_node_that_is_soon_up(self):
-        self.assertEqual(self.back((2, "UP"), (13, "LOST"), (14, "UP")), [])
-
-    def test_finds_a_node_that_is_up_too_late(self):
-        self.assertEqual(len(self.back((2, "UP"), (13, "LOST"), (16, "UP"))), 1)
-
-    def test_finds_a_node_that_does_not_stay_up(self):
-        self.assertEqual(len(self.back((2, "UP"), (30, "STALE"), (31, "UP"))), 1)
+    def test_a_refusal_counts_once_a_note_was_accepted(self):
+        for lines, refused in (((2, "refused to=a id=1"), (3, "accepted to=a id=2")), 0), \
+                (((2, "accepted to=a id=1"), (3, "refused to=a id=2")), 1):
+            self.path.write_text(ledger("b", lines), encoding="utf-8")
+            one = sight.Sight(self.path)
+            one.read()
+            self.assertEqual(one.refused["a"], refused)
 
 
-class StatesTest(unittest.TestCase):
-    def stale(self, waited_s, expected):
-        seen = run(a=[(2, "peer node=b state=UP"), (9, "peer node=b state=STALE"), (9.5, "peer node=b state=UP")], b=[])
-        return expectations.states(busy(seen, 6, 9, waited_s), {"a": {"b": expected}})
+class FleetTest(unittest.TestCase):
+    """A fleet whose ledgers the test writes."""
 
-    def test_a_silence_is_wrong_unless_the_machine_explains_it(self):
-        self.assertEqual(len(self.stale(0.1, ["UP"])), 1)
-        self.assertEqual(self.stale(1, ["UP"]), [])
+    class Program:
+        lines = [(0, "ready")]
+        told = []
+        runs = True
 
-    def test_a_silence_that_is_expected_may_be_explained_by_the_machine_as_well(self):
-        for waited_s in 0.1, 1:
-            self.assertEqual(self.stale(waited_s, ["UP", "STALE", "UP"]), [])
+        def running(self):
+            return self.runs
 
-    def test_a_star_is_each_node_that_is_not_named(self):
-        seen = run(a=[(2, "peer node=b state=UP")], b=[(2, "peer node=a state=UP"), (3, "peer node=a state=STALE")])
-        self.assertEqual(expectations.states(seen, {"*": {"*": ["UP"]}}), ["b saw a as ['UP', 'STALE'], not ['UP']"])
-        self.assertEqual(expectations.states(seen, {"*": {"*": ["UP"]}, "b": {"a": ["UP", "STALE"]}}), [])
+        def tell(self, line):
+            self.told.append(line)
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.processes = {"a": self.Program(), "b": self.Program()}
+        nodes = {"a": ["--to", "b", "--count", "1", "--orders"], "b": ["--states", "1", "--state-posts", "2"]}
+        field = types.SimpleNamespace(folder=folder.name, processes=self.processes)
+        self.fleet = run_scenario.Fleet(field, "program", None, {"nodes": nodes})
+        self.fleet.running = set(nodes)
+        self.faults = run_scenario.Faults(self.fleet)
+
+    def write(self, node, *lines):
+        with open(self.fleet.paths()[node], "a", encoding="utf-8") as file:
+            file.write(ledger(node, lines) if file.tell() == 0 else "".join(f"{at * S} {rest}\n" for at, rest in lines))
+
+    def missing(self, what):
+        with self.assertRaises(run_scenario.NeverSeen) as raised:
+            self.fleet.until(what, 0)
+        return list(raised.exception.args)
+
+    def settled(self, accepted, outbox=0):
+        return (9, f"link to=b accepted={accepted} delivered={accepted - outbox} expired=0 in_doubt=0 undeliverable=0 "
+                   f"outbox={outbox} resent=0")
+
+    def test_waits_for_nodes_that_have_not_met(self):
+        self.write("a", (2, "peer node=b state=UP heard_s=0"))
+        self.write("b", (2, "peer node=a state=STALE heard_s=2"))
+        self.assertEqual(self.missing(self.fleet.not_met), ["b shows a STALE"])
+        self.write("b", (3, "peer node=a state=UP heard_s=0"))
+        self.faults.run([["meet"], ["shows", "b", "a", "UP"], ["says", "a", "ready"]])
+
+    def test_waits_for_notes_and_States(self):
+        self.write("a", self.settled(1, 1))
+        self.write("b", (2, "state_posted message=State0 number=1"))
+        self.assertEqual(sorted(self.missing(self.fleet.unsettled)), ["a to b: 1 of 1 accepted, 1 open", "b: 1 of 2 States posted"])
+        self.write("a", self.settled(1))
+        self.write("b", (3, "state_posted message=State0 number=2"))
+        self.faults.run([["settle"], ["counted", "a", "delivered", 1], ["order", "a", "notes 2"]])
+        self.assertEqual(self.processes["a"].told, ["notes 2"])
+        self.assertEqual(self.missing(self.fleet.unsettled), ["a to b: 1 of 3 accepted, 0 open"])
+
+    def test_waits_no_longer_for_a_node_that_has_ended(self):
+        self.processes["b"].runs = False
+        with self.assertRaises(run_scenario.NeverSeen) as raised:
+            self.faults.run([["reports", "a", "a problem"]])
+        self.assertEqual(raised.exception.args, ("a did not report 'a problem', but []", "b ended by itself"))
 
 
 if __name__ == "__main__":

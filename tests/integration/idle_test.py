@@ -17,7 +17,7 @@ ETHERNET = 14  # the header, which is not IP's
 # A slow machine is slow for a while. The law is for steady traffic, so one of several windows must keep it.
 WINDOW_S = 20
 WINDOWS = 5
-# The nodes must send something: beats come twice a second, with a budget each 5 s, and a busy machine sends some
+# The nodes must send something: beats come twice a second, with a budget each 5 s, and some may come
 # late.
 FEWEST, FEWEST_WITH_BUDGET = WINDOW_S, WINDOW_S // 10
 

@@ -23,7 +23,6 @@
 #include <set>
 #include <sstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace
@@ -49,13 +48,13 @@ struct Options
     std::size_t Window = 128;
     int QueueRoom = 100;
     double ExpireS = 0;
-    double IdleS = 0;
+    bool HeldNotes = false;
     double DrainPeriodS = 0;
     std::int64_t Life = 0;
     bool Ticks = false;
     std::int64_t TickPeriodNs = 100'000'000;
     std::size_t TickPayload = 0;
-    int SlowTicksMs = 0;
+    bool HeldTicks = false;
     TestNode::PictureOptions Pictures;
     bool TakesPictures = false;
     TestNode::StateOptions States;
@@ -166,7 +165,7 @@ private:
 
     void Take()
     {
-        if (Now() < _life + static_cast<std::int64_t>(_options.IdleS * 1e9) || Now() < _nextDrain)
+        if ((_options.HeldNotes && !_options.Orders.MayTake()) || Now() < _nextDrain)
             return;
         _nextDrain = Now() + static_cast<std::int64_t>(_options.DrainPeriodS * 1e9);
         std::shared_ptr<Rabit::RabitMessage> message;
@@ -225,11 +224,10 @@ private:
             {
                 _ticks[status.node] = std::make_shared<Ledger::Tick>();
                 AddPublishSubscribeMessage(status.node + "/Tick", _ticks[status.node]);
-                if (_options.SlowTicksMs > 0)
+                if (_options.HeldTicks)
                 {
-                    const std::chrono::milliseconds pause(_options.SlowTicksMs);
-                    _ticks[status.node]->Register_SomethingPublished([pause]
-                                                                     { std::this_thread::sleep_for(pause); });
+                    _ticks[status.node]->Register_SomethingPublished([this]
+                                                                     { _options.Orders.AwaitReturn(); });
                 }
             }
         }
@@ -314,7 +312,7 @@ void Describe(CLI::App &app, Options &o)
     app.add_option("--state-dir", o.Gateway.StateDir);
     app.add_option("--to", o.To, "Node to send notes to");
     app.add_option("--count", o.Count, "Notes to have accepted by each of these nodes' links");
-    app.add_flag("--orders", o.TakesOrders, "More notes and posts of States, by lines on standard input");
+    app.add_flag("--orders", o.TakesOrders, "Orders (Orders.h) by lines on standard input");
     app.add_option("--rate", o.Rate, "Notes a second to each");
     app.add_option("--accept-from", o.AcceptFrom, "Nodes whose notes are taken; default all");
     app.add_option("--stolen", o.Stolen, "Folder of keys that are used whoever's they are");
@@ -322,15 +320,15 @@ void Describe(CLI::App &app, Options &o)
     app.add_option("--capacity", o.Capacity, "Notes that may wait in one outbox");
     app.add_option("--expire", o.ExpireS, "Seconds after which a note is too old; 0: never");
     app.add_option("--queue-room", o.QueueRoom, "Notes that fit into the local queue");
-    app.add_option("--idle", o.IdleS, "Seconds after the start during which no note is taken");
+    app.add_flag("--held-notes", o.HeldNotes, "Take no note before the order `take`");
     app.add_option("--drain-period", o.DrainPeriodS,
                    "Seconds from one emptying of the local queue to the next");
     app.add_flag("--ticks", o.Ticks, "Publish ticks and follow those of the others");
     app.add_option("--tick-period-ns", o.TickPeriodNs,
                    "From one tick to the next; default a tenth of a second");
     app.add_option("--tick-payload", o.TickPayload, "Octets of padding in each tick");
-    app.add_option("--slow-ticks", o.SlowTicksMs,
-                   "Milliseconds that a handler takes for each tick of another node");
+    app.add_flag("--held-ticks", o.HeldTicks,
+                 "A handler of the ticks of other nodes does not return before the order `return`");
     app.add_option("--pictures-to", o.Pictures.To, "Node to send pictures to, as bulk, once it is UP");
     app.add_flag("--take-pictures", o.TakesPictures);
     app.add_option("--pictures", o.Pictures.Count, "How many");

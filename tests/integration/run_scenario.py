@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Runs one scenario: a fleet of ledger nodes in network namespaces, faults, and the judge's verdict.
+"""Runs one scenario: a fleet of ledger nodes in network namespaces, faults, and the judge's verdict, which outcomes alone
+decide. README.md says how.
 
 Usage: run_scenario.py --ledger-node PROGRAM [--transports NAME,...] [--keep FOLDER] SCENARIO_FOLDER
 The folder's scenario.json holds what README.md lists.
@@ -19,65 +20,43 @@ import time
 
 import expectations
 import field
-import harness
 import judge
 import radio_field
+import sight
 
 HERE = pathlib.Path(__file__).resolve().parent
-TRIES = 3  # of a run in which the machine stands still
+PATIENCE_S = 600  # for an outcome; it only ends a broken run
+LOOK_S = 0.2
+
+
+class NeverSeen(Exception):
+    """Outcomes that did not come, one text for each."""
 
 
 def argument(arguments, flag, default):
     return arguments[arguments.index(flag) + 1] if flag in arguments else default
 
 
-class LedgerEnd:
-    """Follows a ledger as it grows, without reading any line twice: the last counters of each link of the newest life,
-    and how many lines of each kind there are in all."""
-
-    def __init__(self, path):
-        self._path = path
-        self._offset = 0
-        self.links = {}  # (node, queue) -> counters
-        self.in_life = collections.Counter()
-        self.total = collections.Counter()
-
-    def read(self):
-        if not self._path.exists():
-            return
-        with open(self._path, "rb") as file:
-            file.seek(self._offset)
-            lines, newline, _ = file.read().rpartition(b"\n")
-        self._offset += len(lines) + len(newline)
-        for event in filter(None, map(judge.read_line, (lines + newline).decode().splitlines(keepends=True))):
-            self.follow(event)
-
-    def follow(self, event):
-        if event.kind == "start":
-            self.links = {}
-            self.in_life = collections.Counter()
-        elif event.kind == "link":
-            self.links[event["to"], event.values.get("queue", judge.NOTES)] = judge.counters_of(event)
-        self.in_life[event.kind] += 1
-        self.total[event.kind] += 1
-
-
 class Fleet:
-    """The nodes of a scenario and their ledgers. Its programs other than ledger nodes are started and stopped alike."""
+    """The nodes of a scenario and what they have seen. Its programs other than ledger nodes are started and stopped alike."""
 
-    def __init__(self, ground, program, transport, scenario, end=LedgerEnd):
+    def __init__(self, ground, program, transport, scenario):
         self.field = ground
         self._program = program
         self._transport = transport
         self._scenario = scenario
         self._nodes = scenario["nodes"]
-        self.ends = {node: end(self._path(node)) for node in self._nodes}
+        self.sights = {node: sight.Sight(self._path(node)) for node in self._nodes}
         self._steps = collections.Counter()  # node -> seconds by which its wall clock was set forward
         self._disks = collections.Counter()  # node -> how often it was given an empty state folder
+        self._ordered = collections.Counter()  # node -> notes to each receiver that were ordered in its newest life
+        self.running = set()  # nodes
         self.ended = set()  # by themselves or by the scenario, and well
 
     def start(self, node):
         self.ended.discard(node)
+        if node in self._nodes:
+            self.running.add(node)
         programs = self._scenario.get("programs", {})
         inside = {"space": self._scenario["inside"][node]} if node in self._scenario.get("inside", {}) else {}
         if node in programs:
@@ -123,6 +102,23 @@ class Fleet:
         if code != 0:
             raise AssertionError(f"{node} ended with {code}: {[text for _, text in process.lines[-5:]]}")
         self.ended.add(node)
+        self._forget(node)
+
+    def kill(self, node):
+        self.field.kill(node)
+        self._forget(node)
+
+    def _forget(self, node):
+        self.running.discard(node)
+        self._ordered[node] = 0
+        self.sights[node].read()
+        self.sights[node].await_life()
+
+    def order(self, node, text):
+        """A line of Orders.h on the node's standard input."""
+        self.field.processes[node].tell(text)
+        what, _, count = text.partition(" ")
+        self._ordered[node] += int(count) if what == "notes" else 0
 
     def _filled(self, word):
         """@node is that node's address, {here} this folder, {bin} that of the built programs."""
@@ -156,42 +152,61 @@ class Fleet:
                 wrong.append(f"{node} ended by itself: {[text for _, text in process.lines[-5:]]}")
         return wrong
 
-    def wait_until_settled(self, limit_s, waited=lambda begin, end: 0.0):
-        """Until the last life of each node has had all its notes accepted, and has an outcome of each. It may take so long, and
-        what the machine took (harness.Waits) as long as something changes."""
-        before, began = None, time.monotonic()
-        since = began
-        while time.monotonic() - since < limit_s and time.monotonic() - began < limit_s + waited(began, time.monotonic()):
-            left = self._unsettled()
+    def until(self, missing, patience_s=PATIENCE_S):
+        """Waits until `missing()` finds nothing. Raises NeverSeen if it still does after that time, or if a node has ended."""
+        began = time.monotonic()
+        while True:
+            ended = [node for node in self.running if not self.field.processes[node].running()]
+            for one in self.sights.values():
+                one.read()
+            left = missing()
             if not left:
-                return []
-            if left != before:
-                before, since = left, time.monotonic()
-            time.sleep(0.5)
-        return [f"not settled after {time.monotonic() - began:.0f} s, and as it is for {time.monotonic() - since:.0f} s: {text}"
-                for text in left]
+                return
+            if ended or time.monotonic() - began > patience_s:
+                raise NeverSeen(*left, *(f"{node} ended by itself" for node in ended))
+            time.sleep(LOOK_S)
 
-    def _unsettled(self):
+    def groups(self):
+        """The judged nodes that must meet, and those that must not be seen by them: each group by itself."""
+        return self._scenario.get("groups", [self._scenario.get("judged", list(self._nodes))])
+
+    def not_met(self):
+        ticking = [node for node, arguments in self._nodes.items() if "--ticks" in arguments]
+        return [text for group in self.groups()
+                for text in sight.not_met(self.sights, [node for node in group if node in self.running], ticking)]
+
+    def old_states(self):
+        return [text for group in self.groups()
+                for text in sight.old_states(self.sights, [node for node in group if node in self.running])]
+
+    def unsettled(self):
+        """What is missing until the newest life of each node has had all its notes accepted, has an outcome of each, and has
+        posted all its States."""
         left = []
-        for node, end in self.ends.items():
-            end.read()
-            arguments = self._nodes[node]
-            wanted = int(argument(arguments, "--count", 0))
+        for node in self.running:
+            one, arguments = self.sights[node], self._nodes[node]
+            wanted = int(argument(arguments, "--count", 0)) + self._ordered[node]
             for to in (a for flag, a in zip(arguments, arguments[1:]) if flag == "--to"):
-                now = end.links.get((to, judge.NOTES), collections.Counter())
+                now = one.links.get((to, judge.NOTES), collections.Counter())
                 if now["accepted"] < wanted or now["outbox"]:
                     left.append(f"{node} to {to}: {now['accepted']} of {wanted} accepted, {now['outbox']} open")
             pictures = int(argument(arguments, "--pictures", 1)) if "--pictures-to" in arguments else 0
-            if end.in_life["picture_outcome"] < pictures:
-                left.append(f"{node}: outcomes of {end.in_life['picture_outcome']} of {pictures} pictures")
+            if one.in_life["picture_outcome"] < pictures:
+                left.append(f"{node}: outcomes of {one.in_life['picture_outcome']} of {pictures} pictures")
+            posts = int(argument(arguments, "--states", 0)) * int(argument(arguments, "--state-posts", 0))
+            if sum(one.posted.values()) < posts:
+                left.append(f"{node}: {sum(one.posted.values())} of {posts} States posted")
         return left
+
+    def counted(self, node, key):
+        return sum(counters[key] for counters in self.sights[node].links.values())
 
     def _path(self, node):
         return pathlib.Path(self.field.folder, node + ".ledger")
 
 
 class Faults:
-    """One method for each fault that a scenario may name."""
+    """One method for each fault, and each outcome to wait for, that a scenario may name."""
 
     def __init__(self, fleet):
         self._fleet = fleet
@@ -210,7 +225,7 @@ class Faults:
         self._fleet.start(node)
 
     def kill(self, node):
-        self._field.kill(node)
+        self._fleet.kill(node)
 
     def stop(self, node):
         self._fleet.stop_one(node)
@@ -263,13 +278,45 @@ class Faults:
         for _ in range(times):
             self.run(steps)
 
+    def order(self, node, text):
+        self._fleet.order(node, text)
+
+    def meet(self):
+        self._fleet.until(self._fleet.not_met)
+
+    def settle(self):
+        self._fleet.until(self._fleet.unsettled)
+
+    def shows(self, node, other, state):
+        peers = self._fleet.sights[node].peers
+        self._until(lambda: self._fleet.sights[node].peers.get(other) == state,
+                    lambda: f"{node} shows {other} {peers.get(other, 'not at all')}, not {state}")
+
+    def refused(self, node, other):
+        self._until(lambda: self._fleet.sights[node].refused[other], lambda: f"nothing from {node} to {other} is refused")
+
+    def reports(self, node, text):
+        self._until(lambda: any(text in reason for reason in self._fleet.sights[node].problems),
+                    lambda: f"{node} did not report '{text}', but {self._fleet.sights[node].problems}")
+
+    def says(self, program, text):
+        self._until(lambda: any(text in line for _, line in self._field.processes[program].lines),
+                    lambda: f"{program} does not say '{text}'")
+
+    def counted(self, node, key, count):
+        self._until(lambda: self._fleet.counted(node, key) >= count,
+                    lambda: f"{node} counts {self._fleet.counted(node, key)} notes {key}, not {count}")
+
+    def _until(self, holds, text):
+        self._fleet.until(lambda: [] if holds() else [text()])
+
 
 def figures(seen):
-    """One line for each link: what became of the notes, and how long they took, of those sent under loss if any."""
+    """One line for each link: what became of the notes, and how long they took."""
     delays = seen.links()
     for node, lives in seen.lives.items():
         for to in sorted({event["to"] for life in lives for event in life.of("intent")}):
-            took = sorted(1000 * delay for time, delay in delays[node, to] if time - delay > seen.losing_since())
+            took = sorted(1000 * delay for _, delay in delays[node, to])
             total = collections.Counter()
             for life in lives:
                 total.update(life.counters(to) or {})
@@ -277,24 +324,6 @@ def figures(seen):
                    f"expired {total['expired']}, in doubt {total['in_doubt']}, resent {total['resent']}"
                    + (f", delay p50 {took[len(took) // 2]:.1f} ms, p99 {took[len(took) * 99 // 100]:.1f} ms"
                       if took else ""))
-
-
-class StoodStill(Exception):
-    """All that seems wrong in a run in which the whole machine stood still for so long that nodes become STALE. Nobody can tell
-    what the nodes would have done. Messages that are lost, twice or out of order are wrong in any case, and so is a node that ends
-    by itself or with an error."""
-
-
-def repeated(a_run):
-    """What is wrong in a run, which is repeated if the machine stood still meanwhile."""
-    wrong = []
-    for _ in range(TRIES):
-        try:
-            return a_run()
-        except StoodStill as reason:
-            wrong = reason.args[0]
-            print("the run proves nothing, since the machine stood still: " + "; ".join(wrong[:5]), flush=True)
-    return wrong
 
 
 def run(options):
@@ -318,40 +347,32 @@ def run_in(ground, scenario, options):
     """Runs it in a field that is there: namespaces or containers."""
     fleet = Fleet(ground, options.ledger_node, options.transports.split(",")[0], scenario)
     faults = Faults(fleet)
-    pauses = harness.Pauses()
-    waits = harness.Waits(ground.pids)
-    began = time.monotonic()
+    expect = scenario.get("expect", {})
+    wrong = []
     for node in [*scenario["nodes"], *scenario.get("programs", {})]:
         if node not in scenario.get("late", []):
             fleet.start(node)
-    faults.run(scenario["faults"])
-    wrong = fleet.wait_until_settled(scenario["limit_s"], waits.between)
-    seconds = time.monotonic() - began
+    try:
+        faults.run(scenario["faults"])
+        fleet.until(lambda: fleet.unsettled() + fleet.not_met() + fleet.old_states() + expectations.awaited(fleet.sights, expect))
+    except NeverSeen as never:
+        last = faults.done[-1][1:] if faults.done else "the start"
+        wrong += [f"not seen after {last}: {text}" for text in never.args]
     bytes_sent = {node: ground.traffic(node)[0] for node in scenario["nodes"]}
     air = ground.counters() if "medium" in scenario else None
-    # Judged before the stop, which the other nodes see as LOST.
-    wrong += expectations.states(expectations.Run(fleet.ledgers(), faults.done, waits.between), scenario.get("states", {}))
-    ended = time.monotonic()
-    unsound = fleet.stop()
+    wrong += fleet.stop()
     ledgers = fleet.ledgers()
     if options.keep:
         shutil.copytree(ground.folder, options.keep, dirs_exist_ok=True)
-    seen = expectations.Run(ledgers, faults.done, waits.between)
+    seen = expectations.Run(ledgers, faults.done)
     for line in figures(seen):
         print(line)
-    print(f"{seconds:.0f} s; bytes sent: " + ", ".join(f"{node} {count}" for node, count in bytes_sent.items()))
-    seen.air, seen.ended = air, ended
-    print(f"the processes waited for a processor for {waits.between(began, ended):.1f} s, all together")
-    still = pauses.end()
-    for begin, end in still:
-        print(f"the machine stood still for {end - begin:.1f} s, {begin - began:.0f} s after the start")
+    print("bytes sent: " + ", ".join(f"{node} {count}" for node, count in bytes_sent.items()))
     if air:
         print(radio_field.summary(air))
-    wrong += expectations.check(seen, scenario.get("expect", {}))
-    unsound += judge.judge(ledgers[node] for node in scenario.get("judged", ledgers))
-    if wrong and not unsound and any(end - begin >= expectations.STALE_S for begin, end in still):
-        raise StoodStill(wrong)
-    return wrong + unsound
+    wrong += sight.strayed(fleet.sights, fleet.groups()) if "groups" in scenario else []
+    wrong += expectations.check(seen, expect)
+    return wrong + judge.judge(ledgers[node] for node in scenario.get("judged", ledgers))
 
 
 def main():
@@ -363,7 +384,7 @@ def main():
     parser.add_argument("scenario")
     with field.skipping():
         options = parser.parse_args()
-        wrong = repeated(lambda: run(options))
+        wrong = run(options)
     for text in wrong[:50]:
         print("WRONG " + text)
     sys.exit(1 if wrong else 0)
