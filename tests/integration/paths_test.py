@@ -1,27 +1,20 @@
 #!/usr/bin/env python3
 """Two nodes with two networks each, a mesh and a slow modem. The mesh is cut and comes back, again and again, while one
-node sends 50 commands a second: each arrives once, in order, and the gap at the receiver is short.
+node sends commands: all that are sent while it is cut arrive by the modem, each once and in order. The times are judged by
+tests/gateway/PathsTest.cpp.
 
 Usage: paths_test.py LEDGER_NODE TRANSPORTS [--cuts N] [--modem KBIT] [--budget B/s] [--keys RABIT]
-TRANSPORTS: that of the mesh and that of the modem, with a comma between; one: both have it. Prints the gap at each cut, and how many bytes each
-network carried while both were there. Exit code 77: this machine allows no namespaces."""
+TRANSPORTS: that of the mesh and that of the modem, with a comma between; one: both have it.
+Exit code 77: this machine allows no namespaces."""
 
 import argparse
-import pathlib
-import signal
-import statistics
-import sys
-import time
 
 import field
 import fleet_keys
-import harness
 import judge
+import run_scenario
 
-RATE = 50
-LONGEST_GAP_S = 1.0  # and what the machine took
-LIMIT_S = 400  # only ends a broken test
-UP_S, CUT_S = 6, 4
+COMMANDS = 100  # while the mesh is there, and while it is cut, each time
 DEVICES = {"mesh": "eth0", "modem": "eth1"}
 
 
@@ -60,23 +53,6 @@ class TwoNetworks(field.Field):
             field.run_in(self.space(node), "nft", "delete", "table", "ip", "network")
 
 
-def ledger(ground, node):
-    path = pathlib.Path(ground.folder, node + ".ledger")
-    return path.read_text() if path.exists() else ""
-
-
-def arrivals(ground):
-    """Seconds of the monotonic clock."""
-    return [event.time * 1e-9 for life in judge.read_ledger(ledger(ground, "uav1")) for event in life.of("delivered")]
-
-
-def wait_for(what, limit_s):
-    begin = time.monotonic()
-    while not what():
-        assert time.monotonic() - begin < limit_s, "not within the limit"
-        time.sleep(0.05)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("ledger_node")
@@ -87,50 +63,27 @@ def main():
     parser.add_argument("--keys", metavar="RABIT", help="the modem alone has keys, which this program makes")
     options = parser.parse_args()
     mesh, modem = (options.transports.split(",") * 2)[:2]
-    seconds = UP_S + options.cuts * (CUT_S + UP_S)
-    count = RATE * seconds
     with TwoNetworks(["ground", "uav1"], options.modem) as ground:
         keys = fleet_keys.make(options.keys, ground.folder, dict.fromkeys(ground.nodes, modem)) if options.keys else {}
+        paths = {node: ["--path", f"mesh:{mesh}:eth0", "--path",
+                        f"modem:{modem}:eth1:{options.budget or ''}:{keys.get(node, '')}".rstrip(":")] for node in ground.nodes}
+        paths["ground"] += ["--to", "uav1", "--orders", "--rate", "1000000", "--capacity", "5000", "--payload", "50"]
+        fleet = run_scenario.Fleet(ground, options.ledger_node, None,
+                                   {"nodes": paths, "transports": dict.fromkeys(ground.nodes, mesh), "stateless": ground.nodes})
         for node in ground.nodes:
-            ground.start(node, [options.ledger_node, "--node", node, "--ledger", f"{ground.folder}/{node}.ledger",
-                                "--path", f"mesh:{mesh}:eth0", "--path",
-                                f"modem:{modem}:eth1:{options.budget or ''}:{keys.get(node, '')}".rstrip(":"),
-                                *(["--to", "uav1", "--count", count, "--rate", RATE, "--capacity", 5000,
-                                   "--payload", 50] if node == "ground" else [])])
-        waits = harness.Waits(ground.pids)
-        wait_for(lambda: arrivals(ground), LIMIT_S)
-        time.sleep(2)
-        before = {device: ground.sent("ground", device) for device in ("eth0", "eth1")}
-        time.sleep(UP_S - 2)
-        both = {device: ground.sent("ground", device) - before[device] for device in before}
-        print(f"both are there: mesh {both['eth0'] / (UP_S - 2) / 1000:.1f} kB/s, modem {both['eth1'] / (UP_S - 2) / 1000:.2f} kB/s")
-        cuts = []
-        for _ in range(options.cuts):
-            ground.lose(100)
-            cuts.append(time.clock_gettime(time.CLOCK_MONOTONIC))
-            time.sleep(CUT_S)
-            ground.heal()
-            time.sleep(UP_S)
-        wait_for(lambda: len(arrivals(ground)) >= count, LIMIT_S)
-        wait_for(lambda: ledger(ground, "ground").count(" outcome ") >= count, LIMIT_S)
-        time.sleep(2)  # the counters in the ledger are those of the last report
-        for node in ground.nodes:
-            ground.signal(node, signal.SIGINT)
-        wait_for(lambda: not any(process.running() for process in ground.processes.values()), LIMIT_S)
-        wrong = judge.judge([ledger(ground, node) for node in ground.nodes])
-        at = arrivals(ground)
-    assert not wrong, "\n".join(map(str, wrong))
-    gaps, wrong = [], []
-    for cut in cuts:
-        times = [moment for moment in at if cut - 0.5 <= moment <= cut + CUT_S]
-        pairs = list(zip(times, times[1:]))
-        gaps.append(max(later - earlier for earlier, later in pairs))
-        wrong += [later - earlier for earlier, later in pairs
-                  if later - earlier - waits.between(earlier, later) > LONGEST_GAP_S]
-    overall = max(later - earlier for earlier, later in zip(at, at[1:]))
-    print(f"{options.cuts} cuts: gap p50 {statistics.median(gaps) * 1000:.0f} ms, worst {max(gaps) * 1000:.0f} ms; "
-          f"longest of all {overall * 1000:.0f} ms; {len(at)} of {count} commands, each once and in order")
-    assert not wrong, wrong
+            fleet.start(node)
+        steps = run_scenario.Faults(fleet)
+        round_of_commands = [["order", "ground", f"notes {COMMANDS}"], ["settle"]]
+        try:
+            steps.run([["meet"], *round_of_commands])
+            steps.run([["repeat", options.cuts, [["lose", 100], *round_of_commands, ["heal"], *round_of_commands]]])
+            wrong = []
+        except run_scenario.NeverSeen as never:
+            wrong = [f"not seen after {steps.done[-1][1:]}: {text}" for text in never.args]
+        wrong += fleet.stop() + judge.judge(fleet.ledgers().values())
+        delivered = fleet.counted("ground", "delivered")
+    assert not wrong, "\n".join(wrong)
+    print(f"{options.cuts} cuts: {delivered} commands, each once and in order")
 
 
 if __name__ == "__main__":

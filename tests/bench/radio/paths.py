@@ -29,6 +29,18 @@ def percentile(values, share):
     return values[min(len(values) - 1, int(share * len(values)))] if values else float("nan")
 
 
+def wait_for(what, limit_s):
+    begin = time.monotonic()
+    while not what():
+        assert time.monotonic() - begin < limit_s, "not within the limit"
+        time.sleep(0.05)
+
+
+def ledger(ground, node):
+    path = pathlib.Path(ground.folder, node + ".ledger")
+    return path.read_text() if path.exists() else ""
+
+
 def now():
     return time.clock_gettime(time.CLOCK_MONOTONIC)
 
@@ -70,7 +82,7 @@ class Flight:
             else:
                 arguments += ["--take-pictures"] if more else []
             ground.start(node, arguments)
-        paths_test.wait_for(lambda: " delivered " in paths_test.ledger(ground, "uav1"), 30)
+        wait_for(lambda: " delivered " in ledger(ground, "uav1"), 30)
         time.sleep(4)
 
     def end(self):
@@ -78,8 +90,8 @@ class Flight:
         for node in self.ground.nodes:
             self.ground.signal(node, signal.SIGINT)
             time.sleep(1)
-        paths_test.wait_for(lambda: not any(p.running() for p in self.ground.processes.values()), 20)
-        return {node: judge.read_ledger(paths_test.ledger(self.ground, node)) for node in self.ground.nodes}
+        wait_for(lambda: not any(p.running() for p in self.ground.processes.values()), 20)
+        return {node: judge.read_ledger(ledger(self.ground, node)) for node in self.ground.nodes}
 
 
 def sent_and_delivered(lives):
