@@ -121,8 +121,8 @@ class Flight:
         self.recorders.fly(node)
 
     def kill(self, node):
-        for name in (node, self.orders(node)):
-            self.ground.kill(name)
+        self.ground.kill(node)
+        self.ledgers.kill(self.orders(node))
         time.sleep(3)
         self.start(node)
 
@@ -164,6 +164,14 @@ class Flight:
             print(f"{what}: {number + 1} faults, {self._until - time.monotonic():.0f} s left", flush=True)
             time.sleep(max(0.0, min(begin + MINUTE_S, self._until) - time.monotonic()))
 
+    def settle(self):
+        """What is missing of the commands."""
+        try:
+            self.ledgers.until(self.ledgers.unsettled, SETTLE_S)
+        except run_scenario.NeverSeen as never:
+            return list(never.args)
+        return []
+
     def posts(self):
         """What is wrong with the recordings of the ground station, and the figures."""
         try:
@@ -192,7 +200,7 @@ def soak(programs, transport, seconds):
         flight = Flight(ground, programs, {"mesh": mesh, "modem": modem}, seconds)
         faults = flight.endure()
         ground.heal()
-        verdicts["settled"] = flight.ledgers.wait_until_settled(SETTLE_S)
+        verdicts["settled"] = flight.settle()
         verdicts["posts"], figures = flight.posts()
         verdicts["modem"], most = modem_watch.end()
         verdicts["ended well"] = flight.ledgers.stop()
