@@ -205,13 +205,13 @@ void OutgoingQueues::NoteRefusedThere()
     {
         const LinkTypeParts parts = SplitLinkTypeName(refused.Type);
         const std::string type(parts.Type);
-        const RemoteQueues::Answer now = _remote.Ask(refused.Node, refused.Queue, type, parts.Definition);
-        const bool isKnown = now.What != QueueAcceptance::Accepted &&
-                             now.What != QueueAcceptance::UnknownNode &&
-                             now.What != QueueAcceptance::NotAnnounced;
-        _refusals.Tell(refused.Node, refused.Queue, now.What,
+        const RemoteQueues::Answer answer = _remote.Ask(refused.Node, refused.Queue, type, parts.Definition);
+        const bool isKnown = answer.What != QueueAcceptance::Accepted &&
+                             answer.What != QueueAcceptance::UnknownNode &&
+                             answer.What != QueueAcceptance::NotAnnounced;
+        _refusals.Tell(refused.Node, refused.Queue, answer.What,
                        "messages of `" + type + "` that waited for " + refused.Node + " were refused there" +
-                           (isKnown ? ": " + now.Reason : ""),
+                           (isKnown ? ": " + answer.Reason : ""),
                        _workspace.GetClock().Monotonic());
     }
 }

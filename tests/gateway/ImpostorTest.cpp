@@ -100,7 +100,7 @@ TEST_F(StrangeLinkTest, ANodeThatSpeaksAnotherVersionOfTheLinksIsNamed)
 {
     Write("uav7", {LinkVersion + 4, 1, 2, 3});
     EXPECT_THAT(uav.Problems(), HasSubstr("node uav7"));
-    EXPECT_THAT(uav.Problems(), HasSubstr("speaks version 7 of the queue links, this one version 3"));
+    EXPECT_THAT(uav.Problems(), HasSubstr("speaks version 8 of the queue links, this one version 4"));
 }
 
 TEST_F(StrangeLinkTest, BytesThatAreNoFrameAreCounted)
