@@ -26,6 +26,7 @@ namespace
 {
 
 using namespace std::chrono_literals;
+using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
 
 constexpr int Messages = 3000;
 
@@ -193,7 +194,6 @@ TEST_P(RealNodesTest, QueuesAreCompleteAndInOrderAndTheLastPostArrivesUnderLoadB
 // A manager may end at any time, even while the transport's thread tells its queue of a message.
 TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
 {
-    using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
     Node first(GetParam().first, "first", "second", condition, {"Passing"});
     Node second(GetParam().second, "second", "first", condition);
     const auto next = std::make_shared<Queue>(100, "Passing");
@@ -232,7 +232,6 @@ TEST_P(RealNodesTest, AQueueWhoseManagerGoesLivesUntilItsHandlersHaveRun)
 // The transport receives both messages on one thread.
 TEST_P(RealNodesTest, ASlowHandlerDoesNotHoldUpWhatComesNext)
 {
-    using Queue = RabitMessageQueue<std::shared_ptr<RabitMessage>>;
     bool began = false;  // these outlive the nodes, whose threads use them
     bool mayReturn = false;
     bool came = false;
