@@ -23,9 +23,10 @@ from mutants import Mutants  # first, as it finds the module that the lists impo
 from air_list import MUTATIONS as AIR
 from common_list import MUTATIONS as COMMON
 from mirrors_list import MUTATIONS as MIRRORS
+from seal_list import MUTATIONS as SEAL
 from transport_list import MUTATIONS as TRANSPORT
 
-MUTATIONS = [*AIR, *MIRRORS, *TRANSPORT, *COMMON]
+MUTATIONS = [*AIR, *MIRRORS, *TRANSPORT, *SEAL, *COMMON]
 # Only keeps a hanging mutant from hanging the run. A mutant that hangs counts as noticed.
 LIMIT_S = 120
 
