@@ -137,6 +137,14 @@ TEST_F(SealFreshness, AClaimWithTheCertificateOfAnotherHashIsRefused)
     EXPECT_EQ(B.Sessions.Size(), 0u);
 }
 
+TEST_F(SealFreshness, AClaimThatAnotherMemberSignedIsRefused)
+{
+    // C has the certificate of A, which is public, and the epoch's secret.
+    A.Me.Signing = *SigningKey::Of(SeedOf(3, 3));
+    EXPECT_EQ(B.Fault(A.Claims({B.NonceOf()})), OpenFault::BadSignature);
+    EXPECT_EQ(B.Sessions.Size(), 0u);
+}
+
 TEST_F(SealFreshness, AClaimWithoutTheEpochsSecretIsRefusedWithoutASignature)
 {
     Node stranger(Signs, "uav7", 7);
