@@ -17,7 +17,8 @@ import tempfile
 LIMITS = pathlib.Path(__file__).resolve().parent / "limits.json"
 MESSAGES = 3000
 PROGRAMS = {"bench_core_counts": ["post", "post-fetch", "queue-add"],
-            "bench_counts": ["codec", "state", "telemetry", "queue", "packed-queue"]}
+            "bench_counts": ["codec", "state", "telemetry", "queue", "packed-queue"],
+            "bench_seal_counts": ["seal-pairwise", "seal-open-pairwise", "open-replay"]}
 INSTRUCTIONS_MARGIN = 1.05
 # Some work comes once a second and may or may not fall into the measured time.
 ALLOCATIONS_MARGIN = 0.05
