@@ -1,6 +1,6 @@
 // Datagrams for the guard, in each of its modes.
 #include "Input.h"
-#include "guard/JoinMessages.h"
+#include "envelope/JoinMessages.h"
 #include "guard/RtpsGuard.h"
 
 using Rabit::Rtps::RtpsGuard;

@@ -3,6 +3,7 @@
 from mutation import Mutation
 
 FASTDDS = "transport/fastdds/src/"
+ENVELOPE = "transport/envelope/"
 GUARD = "transport/guard/"
 GUARD_TEST = "rtps_guard_test"
 HISTORY = "fastdds_history_test"
@@ -14,11 +15,38 @@ def guard(name, file, find, replace):
     return Mutation(name, GUARD + file, find, replace, f"{GUARD_TEST}:*")
 
 
+def merged(name, find, replace):
+    return Mutation(name, ENVELOPE + "MergedMessage.cpp", find, replace, "transport_envelope_test:*")
+
+
 def history(name, file, find, replace):
     return Mutation(name, FASTDDS + file, find, replace, f"{HISTORY}:*")
 
 
 MUTATIONS = [
+    # Several messages in one
+    merged("a destination holds for the parts behind it", "hasDestination && content.LacksDestination", "false"),
+    merged("a time holds for the parts behind it", "hasTime && content.LacksTime", "false"),
+    merged("a destination that was taken back still holds", "hasDestination && !forgetsDestination", "hasDestination"),
+    merged("a time is forgotten behind a part without data", "hasTime && !forgetsTime", "false"),
+    merged("a length that is left out stays so", "if (_last.OpenAt > 0)", "if (false)"),
+    merged("lengths are written as on this machine", "(submessage[1] & LittleEndianFlag) != 0", "true"),
+    merged("a length that cannot be written out may be followed",
+           "body > 0 && body <= std::numeric_limits<std::uint16_t>::max()", "true"),
+    merged("a submessage of no bytes may be followed", "isOpen ? body > 0 && body", "isOpen ? body"),
+    merged("parts follow what changes their sender", "content.IsPlain && IsDelivery(submessage.Kind)", "content.IsPlain"),
+    merged("what changes its sender follows other parts", "_last.IsPlain && content.IsPlain &&", "_last.IsPlain &&"),
+    merged("parts of any sender are joined", "std::ranges::equal(part.first(std::min(RtpsHeaderSize, part.size())), _sender)", "true"),
+    merged("parts follow an odd length", "&& end % SubmessageHeaderSize == 0", ""),
+    merged("the limit is forgotten", "if (!isFirst && at + part.size() - begin > _most)", "if (false)"),
+    merged("a refused part leaves something behind", "_bytes.resize(before); return 0;", "return 0;"),
+    Mutation("a small datagram passes a large one", "transport/common/SendingTurn.cpp",
+             "std::find_if(_kept.rbegin(), _kept.rend(), [&way](const auto &kept) { return kept.first == way; }); return found != _kept.rend()",
+             "std::find_if(_kept.begin(), _kept.end(), [&way](const auto &kept) { return kept.first == way; }); return found != _kept.end()",
+             "transport_envelope_test:SendingTurnTest.*"),
+    Mutation("what was dropped is sent", "transport/common/SendingTurn.cpp", "_kept.clear();", "", "transport_envelope_test:SendingTurnTest.*"),
+    Mutation("a turn takes the datagrams of all sessions", "transport/common/SendingTurn.h", "return _ofThread == this;",
+             "return _ofThread != nullptr;", "transport_envelope_test:SendingTurnTest.*"),
     # Where submessages begin and end
     guard("another protocol passes", "RtpsMessage.cpp", 'std::memcmp(datagram.data(), "RTPS", 4) == 0 &&', ""),
     guard("another version passes", "RtpsMessage.cpp", "datagram[4] == MajorVersion &&", ""),

@@ -19,7 +19,7 @@
 #include "common/MulticastUse.h"
 #include "common/RtpsTraffic.h"
 #include "common/SendingSamples.h"
-#include "guard/JoinMessages.h"
+#include "envelope/JoinMessages.h"
 #include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::Cyclone

@@ -123,10 +123,10 @@ struct TransportSettings
     std::size_t MaxDatagram = 1400;
     // Use shared memory between processes of one host. Off by default: a killed process leaves files behind.
     bool SharedMemory = false;
-    // A peer that sends nothing for the length of the lease, at most 5 min, is lost. A session announces itself at least once
-    // per AnnouncementPeriod, more often at first and to peers that have not heard it. The period costs an
-    // idle node some 400 bytes each time. It also bounds how long nodes take to find each other again after a
-    // separation longer than the lease.
+    // A peer that sends nothing for the length of the lease, at most 5 min, is lost. A session announces
+    // itself at least once per AnnouncementPeriod, more often at first and to peers that have not heard it.
+    // The period costs an idle node some 400 bytes each time. It also bounds how long nodes take to find each
+    // other again after a separation longer than the lease.
     std::chrono::milliseconds Lease{30000};
     std::chrono::milliseconds AnnouncementPeriod{10000};
     // A silent Rabit node is remembered for this long, so that discovery need not be repeated when it is
@@ -361,13 +361,21 @@ struct TransportCounters
 
     // Datagrams sent since the session was opened, and their bytes on the air with the headers of IPv4 and
     // UDP (28 for each). One for each destination; a multicast datagram counts once for each network. Counted
-    // where datagrams are given to the sockets, so repetitions, heartbeats and acknowledgements are included;
+    // where datagrams are given to the sockets (in a turn: kept for its end), so repetitions, heartbeats and
+    // acknowledgements are included;
     // exact but for the headers that IP fragmentation adds. Not counted: shared memory, and anything with a
     // Fast DDS profiles file that has its own transports. The simulated network counts by the sizes of RTPS.
     std::uint64_t DiscoveryDatagrams = 0;  // of participants and endpoints, and their repair
     std::uint64_t DiscoveryBytes = 0;
     std::uint64_t SampleDatagrams = 0;  // of topics, and their repair
     std::uint64_t SampleBytes = 0;
+};
+
+// The destinations of datagrams of a turn (TransportSession::BeginTurn).
+struct TurnDestinations
+{
+    std::uint64_t Number = 0;  // equal for equal sets of sockets, addresses and ports
+    std::size_t Count = 0;     // of copies, one for each destination; 0: no datagram was kept for the turn
 };
 
 // One participant in the network.
@@ -402,6 +410,18 @@ public:
     // ten seconds (setting `stranger`, the address as the entry). None is Impossible, and none is logged: the
     // holder of the session reports them. Empty if all is well. Any thread.
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
+    // Begins a turn of the calling thread: the datagrams of samples that it writes until EndTurn are sent by
+    // EndTurn. Those to the same address and port go as one datagram of at most `mostBytes` bytes, the
+    // headers of IP and UDP included, in the order in which they were written. A datagram that does not fit
+    // goes by itself. Counters count a kept datagram at once, with the bytes that it adds to what is sent.
+    // Returns false, and begins nothing, if this session sends each datagram by itself, as with Security.
+    //
+    // A turn is short: between the calls the thread writes some samples. Only one thread uses turns, and has
+    // one turn at a time. A session that joins the network anew meanwhile drops the datagrams.
+    virtual bool BeginTurn(std::size_t /*mostBytes*/) { return false; }
+    // Where the datagrams that were written in this turn since the last call will go.
+    virtual TurnDestinations TakeTurnDestinations() { return {}; }
+    virtual void EndTurn() {}
     // Lets the holder decide when discovery sends. Null: this session does not wait for turns. Lives as long
     // as the session. Any thread.
     virtual DiscoveryTurns *Discovery() { return nullptr; }

@@ -1,5 +1,5 @@
 // Joins several messages into one, for a vendor that takes one at a time.
-#include "guard/JoinMessages.h"
+#include "envelope/JoinMessages.h"
 
 #include <gtest/gtest.h>
 
