@@ -159,6 +159,21 @@ std::vector<SettingsProblem> RejoiningSession::NetworkProblems() const
     return problems;
 }
 
+bool RejoiningSession::BeginTurn(std::size_t mostBytes)
+{
+    // With Security, a vendor may protect a datagram as a whole.
+    constexpr std::size_t Headers = 20 + 8;  // IPv4, UDP
+    _turnOf = _shared->Left;
+    return !_settings.Security && mostBytes > Headers && _sending->Begin(mostBytes - Headers);
+}
+
+// The kept datagrams belong to the session of the backend that was there when the turn began.
+void RejoiningSession::EndTurn()
+{
+    const UseGate::Use use(_shared->Gate);
+    use.Allowed() && _turnOf == _shared->Left ? _sending->End() : _sending->Drop();
+}
+
 std::optional<milliseconds> RejoiningSession::Look()
 {
     const auto peers = PeerPlaces();
@@ -280,7 +295,8 @@ void RejoiningSession::Open(const Current &current)
         _backend->Open(current.Settings, {.Log = _shared->Log,
                                           .Topics = _shared->Topics,
                                           .OnPeer = [this](const PeerEvent &event) { OnPeer(event); },
-                                          .Turns = _turns});
+                                          .Turns = _turns,
+                                          .Sending = _sending});
     _openedPeers = current.Settings.Peers;
     try
     {
@@ -330,6 +346,7 @@ void RejoiningSession::Fail(const std::string &setting, const std::string &why)
 
 void RejoiningSession::CloseAll()
 {
+    ++_shared->Left;
     for (RejoiningEndpoint *endpoint : _shared->Endpoints)
     {
         endpoint->Close();

@@ -9,6 +9,8 @@
 #include <rabit/transport/Transport.h>
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -26,6 +28,7 @@
 #include "common/RejoinDecision.h"
 #include "common/RejoiningBackend.h"
 #include "common/RejoiningShared.h"
+#include "common/SendingTurn.h"
 
 namespace Rabit
 {
@@ -66,6 +69,9 @@ public:
     std::vector<std::string> RemoteTopics() const override { return _shared->Topics->RemoteTopics(); }
     std::vector<SettingsProblem> NetworkProblems() const override;
     DiscoveryTurns *Discovery() override { return _turns.get(); }
+    bool BeginTurn(std::size_t mostBytes) override;
+    TurnDestinations TakeTurnDestinations() override { return _sending->TakeDestinations(); }
+    void EndTurn() override;
 
     // Starts a thread of the session that calls Look() whenever the kernel reports a change.
     void Watch();
@@ -99,6 +105,8 @@ private:
     const Host _host;
     const std::shared_ptr<RejoiningShared> _shared;
     const std::shared_ptr<DiscoveryTurns> _turns = std::make_shared<DiscoveryTurns>();
+    const std::shared_ptr<SendingTurn> _sending = std::make_shared<SendingTurn>();
+    std::uint64_t _turnOf = 0;  // RejoiningShared::Left, when the turn began; for its thread alone
     HandlerGate _peerGate;
     mutable std::mutex _mutex;
     std::map<Identity, int> _peers;          // sessions that the backend knows now; guarded by _mutex

@@ -2,6 +2,8 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -36,9 +38,10 @@ struct RejoiningShared
     const std::shared_ptr<SessionLog> Log;
     // Refuses an impossible topic even while there is no session of the backend.
     const std::shared_ptr<TopicRegistry> Topics;
-    UseGate Gate;                                // guards the backend's objects that the endpoints hold
-    std::mutex Structure;                        // guards the session and the list; taken before Gate
-    std::unique_ptr<BackendSession> Inner;       // nullptr while not joined; guarded by Structure
+    UseGate Gate;                           // guards the backend's objects that the endpoints hold
+    std::mutex Structure;                   // guards the session and the list; taken before Gate
+    std::unique_ptr<BackendSession> Inner;  // nullptr while not joined; guarded by Structure
+    std::atomic<std::uint64_t> Left{0};     // times that a session was closed to join anew; guarded by Gate
     std::vector<RejoiningEndpoint *> Endpoints;  // guarded by Structure
 };
 

@@ -33,7 +33,7 @@ public:
     // Equal for datagrams from one socket to one address and port.
     using Way = std::pair<std::uint64_t, std::uint64_t>;
 
-    // What a datagram adds to what will be sent.
+    // The datagrams and bytes that one more datagram adds.
     struct Grown
     {
         std::size_t Datagrams = 0;  // 1, or 0 if it joined a datagram

@@ -4,6 +4,7 @@
 
 #include <memory>
 
+#include "common/SendingTurn.h"
 #include "common/SessionLog.h"
 #include "common/TopicRegistry.h"
 
@@ -17,6 +18,7 @@ struct SessionContext
     std::shared_ptr<TopicRegistry> Topics;
     PeerHandler OnPeer;  // never empty
     std::shared_ptr<DiscoveryTurns> Turns;
+    std::shared_ptr<SendingTurn> Sending;
 };
 
 }  // namespace Rabit

@@ -42,7 +42,7 @@ public:
     std::vector<std::uint8_t> &Bytes() { return _bytes; }
 
 private:
-    // What a part does to its neighbours.
+    // The properties of a part that concern its neighbours.
     struct Content
     {
         bool IsPlain = true;            // Add takes it, and others behind it

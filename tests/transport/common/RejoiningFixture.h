@@ -39,6 +39,7 @@ struct Script
     std::vector<PeerPlace> Places;
     PeerHandler OnPeer;
     std::shared_ptr<TopicRegistry> Topics;
+    std::shared_ptr<SendingTurn> Sending;
     std::function<void()> InOpen;
     std::atomic<bool> Blocks{false};  // a Write
     std::atomic<bool> IsWriting{false};
@@ -140,6 +141,7 @@ public:
         _script.Opened.push_back(settings);
         _script.OnPeer = context.OnPeer;
         _script.Topics = context.Topics;
+        _script.Sending = context.Sending;
         context.Log->SamplesLost(5);
         return std::make_unique<ScriptedSession>(_script);
     }
@@ -163,6 +165,18 @@ class Sample final : public SampleEncoder
 public:
     std::size_t EncodedSize() const override { return 4; }
     bool Encode(std::span<std::uint8_t>) const override { return true; }
+};
+
+// Counts what is sent at the end of a turn.
+class CountedDatagram final : public TurnDatagram
+{
+public:
+    explicit CountedDatagram(int &sent) : _sent(sent) {}
+    std::size_t Add(std::span<const std::uint8_t> datagram) override { return datagram.size(); }
+    void Send() override { ++_sent; }
+
+private:
+    int &_sent;
 };
 
 inline const HostNetwork Wired = Network(2, "eth0", "10.0.0.1");
@@ -212,6 +226,22 @@ protected:
             entries.push_back(problem.Entry);
         }
         return entries;
+    }
+    // Writes a datagram in a turn, and ends the turn after `meanwhile`. Returns true if the datagram was
+    // sent.
+    bool TakesTurn(
+        RejoiningSession &session, const std::function<void()> &meanwhile = [] {})
+    {
+        int sent = 0;
+        EXPECT_TRUE(session.BeginTurn(1000));
+        EXPECT_TRUE(_script.Sending->IsOfThisThread());
+        const std::vector<std::uint8_t> datagram(20);
+        _script.Sending->Take({1, 1}, datagram,
+                              [&](std::size_t) { return std::make_unique<CountedDatagram>(sent); });
+        meanwhile();
+        session.EndTurn();
+        EXPECT_FALSE(_script.Sending->IsOfThisThread());
+        return sent == 1;
     }
 
     Script _script;

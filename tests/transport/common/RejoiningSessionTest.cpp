@@ -18,6 +18,40 @@ TEST_F(RejoiningSessionTest, OpensWithTheAddressesThatAreThere)
     EXPECT_THAT(_script.Opened[0].Interfaces, ElementsAre("10.0.0.1", "10.1.0.1"));
 }
 
+// The datagram would go to sockets that are closed.
+TEST_F(RejoiningSessionTest, DropsTheDatagramsOfATurnInWhichItJoinsAnew)
+{
+    const auto session = Open();
+    EXPECT_TRUE(TakesTurn(*session));
+    const auto change = [&]
+    {
+        _networks.push_back(Radio);
+        Follow(*session);
+    };
+    EXPECT_FALSE(TakesTurn(*session, change));
+    EXPECT_EQ(_script.Opened.size(), 2u);
+    EXPECT_TRUE(TakesTurn(*session));
+    _script.Refuses = true;
+    const auto fail = [&]
+    {
+        _networks = {Wired};
+        _script.Places = {};
+        _now += 1h;
+        _networks.push_back(Network(4, "radio1", "10.2.0.1"));
+        Follow(*session);
+    };
+    EXPECT_FALSE(TakesTurn(*session, fail)) << "and when it cannot join";
+    EXPECT_FALSE(_script.IsOpen);
+}
+
+TEST_F(RejoiningSessionTest, TakesNoTurnsWithSecurity)
+{
+    _settings.Security.emplace();
+    const auto session = Open();
+    EXPECT_FALSE(session->BeginTurn(1000));
+    EXPECT_FALSE(_script.Sending->IsOfThisThread());
+}
+
 // As without a free descriptor. The kernel reports no change when they can be listed again.
 TEST_F(RejoiningSessionTest, LooksAgainForNetworksThatCannotBeListed)
 {

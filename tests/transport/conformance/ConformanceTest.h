@@ -52,6 +52,9 @@ protected:
     // Expects that each write to two remote readers takes `destinations` datagrams, no larger than they
     // need to be.
     void ExpectCostOfWriting(bool multicast, int destinations);
+    // Expects that samples of two writers to two remote readers go in `destinations` datagrams if they are
+    // written in one turn.
+    void ExpectOneDatagramForATurn(bool multicast, std::uint64_t destinations);
     // Expects that a sample written to one node reaches its reader alone, in one datagram.
     void ExpectThatOneNodeCanBeWrittenTo(bool multicast);
     // Expects that a held large sample goes out one datagram at a time.

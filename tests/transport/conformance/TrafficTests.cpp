@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <vector>
@@ -72,6 +73,94 @@ TEST_P(Conformance, WhatGoesToEachReaderByItselfCostsThatOftenAndIsCounted)
 TEST_P(Conformance, WhatGoesToAllByMulticastCostsOnceAndIsCounted)
 {
     ExpectCostOfWriting(true, 1);
+}
+
+void Conformance::ExpectOneDatagramForATurn(bool multicast, std::uint64_t destinations)
+{
+    const auto writing = OpenWith("uav1", multicast);
+    const auto first = OpenWith("ground", multicast);
+    const auto second = OpenWith("uav2", multicast);
+    const auto poses = writing->CreateWriter(TextTopic("Pose"), Telemetry(), {});
+    const auto states = writing->CreateWriter(TextTopic("State"), State(), {});
+    SampleRecorder poseHere;
+    SampleRecorder poseThere;
+    SampleRecorder stateHere;
+    SampleRecorder stateThere;
+    const ReaderPtr readers[] = {
+        first->CreateReader(TextTopic("Pose"), Telemetry(), {}, poseHere.Handler()),
+        second->CreateReader(TextTopic("Pose"), Telemetry(), {}, poseThere.Handler()),
+        first->CreateReader(TextTopic("State"), State(), {}, stateHere.Handler()),
+        second->CreateReader(TextTopic("State"), State(), {}, stateThere.Handler())};
+    const auto isMatched = [](const ReaderPtr &reader) { return reader->MatchedWriters() == 1; };
+    ASSERT_TRUE(Until(
+        [&]
+        {
+            return poses->MatchedReaders() == 2 && states->MatchedReaders() == 2 &&
+                   std::all_of(std::begin(readers), std::end(readers), isMatched);
+        }));
+    const RawSample sample{std::vector<std::uint8_t>(100)};
+    constexpr int Turns = 20;
+    // Heartbeats may be counted in between, so not all turns tell.
+    int ofOneDatagram = 0;
+    for (int turn = 1; turn <= Turns; ++turn)
+    {
+        ASSERT_TRUE(writing->BeginTurn(1400));
+        const TransportCounters before = writing->Counters();
+        ASSERT_EQ(WriteOnceTaken(*poses, sample, 1000 * turn), WriteResult::Ok);
+        const TurnDestinations ofPoses = writing->TakeTurnDestinations();
+        ASSERT_EQ(WriteOnceTaken(*states, sample, 1000 * turn), WriteResult::Ok);
+        const TurnDestinations ofStates = writing->TakeTurnDestinations();
+        const TransportCounters after = writing->Counters();
+        writing->EndTurn();
+        EXPECT_EQ(ofPoses.Count, destinations);
+        EXPECT_NE(ofPoses.Number, 0u);
+        EXPECT_EQ(ofPoses.Number, ofStates.Number);
+        const bool isOne = after.SampleDatagrams - before.SampleDatagrams == destinations;
+        const std::uint64_t bytes = after.SampleBytes - before.SampleBytes;
+        ofOneDatagram += isOne && bytes <= destinations * (Most + 100 + Most - 48 + 100) ? 1 : 0;
+        const auto arrived = [turn](SampleRecorder &recorder)
+        { return recorder.Count() == static_cast<std::size_t>(turn); };
+        const bool haveAll = Until(
+            [&]
+            { return arrived(poseHere) && arrived(poseThere) && arrived(stateHere) && arrived(stateThere); });
+        ASSERT_TRUE(haveAll) << "turn " << turn;
+    }
+    EXPECT_GE(ofOneDatagram, Turns / 2);
+}
+
+TEST_P(Conformance, SamplesOfATurnGoInOneDatagramByMulticast)
+{
+    ExpectOneDatagramForATurn(true, 1);
+}
+
+TEST_P(Conformance, SamplesOfATurnGoInOneDatagramToEachReader)
+{
+    ExpectOneDatagramForATurn(false, 2);
+}
+
+// Thirty samples of one writer, of which three fit a datagram.
+TEST_P(Conformance, SamplesOfATurnArriveInTheirOrderWhateverTheirSizes)
+{
+    const auto writing = Open("uav1");
+    const auto reading = Open("ground");
+    const auto writer = writing->CreateWriter(TextTopic(), State(30), {});
+    SampleRecorder recorder;
+    const auto reader = reading->CreateReader(TextTopic(), State(30), {}, recorder.Handler());
+    ASSERT_TRUE(Matched(writer, reader));
+    ASSERT_TRUE(writing->BeginTurn(600));
+    for (std::size_t i = 0; i < 30; ++i)
+    {
+        const RawSample sample{
+            std::vector<std::uint8_t>(i % 7 == 3 ? 900 : 100, static_cast<std::uint8_t>(i))};
+        ASSERT_EQ(WriteOnceTaken(*writer, sample, static_cast<std::int64_t>(i)), WriteResult::Ok);
+    }
+    EXPECT_EQ(recorder.Count(), 0u) << "sent before the end";
+    writing->EndTurn();
+    ASSERT_TRUE(Until([&] { return recorder.Count() == 30; }));
+    for (std::size_t i = 0; i < 30; ++i)
+    {
+        EXPECT_EQ(recorder.All()[i].Bytes.back(), i);
+    }
 }
 
 TEST_P(Conformance, SessionsWhoseDiscoveryTakesTurnsFindAllOfEachOtherByThem)

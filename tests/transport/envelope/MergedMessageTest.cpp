@@ -60,7 +60,7 @@ bool Follows(const Bytes &first, const Bytes &part, std::size_t most = Most)
     return grown > 0;
 }
 
-// What a receiver makes of a message: each submessage with the destination and the time that hold for it.
+// The submessages that a receiver reads, each with the destination and the time that hold for it.
 std::vector<Bytes> ReadOf(const Bytes &message)
 {
     std::vector<Bytes> found;

@@ -86,6 +86,18 @@ public:
     Receiving(const Receiving &) = delete;
     Receiving &operator=(const Receiving &) = delete;
     std::uint32_t Port() const { return _port; }
+    // A datagram that comes behind all that was sent to this socket before.
+    static inline const Bytes Fence{1, 2, 3};
+    void SendFence() const
+    {
+        sockaddr_in address{};
+        address.sin_family = AF_INET;
+        address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        address.sin_port = htons(static_cast<std::uint16_t>(_port));
+        EXPECT_EQ(sendto(_socket, Fence.data(), Fence.size(), 0, reinterpret_cast<sockaddr *>(&address),
+                         sizeof(address)),
+                  static_cast<ssize_t>(Fence.size()));
+    }
     // The next datagram; empty if none comes.
     Bytes Next()
     {
@@ -167,6 +179,7 @@ private:
 protected:
     Port Discovery;
     Port Samples;
+    const std::shared_ptr<Rabit::SendingTurn> Turn = _descriptor.Chosen().Sending;
     const std::unique_ptr<ChainedUdp> Own{static_cast<ChainedUdp *>(_descriptor.create_transport())};
 };
 
@@ -195,6 +208,41 @@ TEST_F(GuardedUdpTest, TheGroupThatIsNotAnnouncedIsForDiscovery)
     Receive(Discovery, GroupPort, ParticipantMessage(Sender));
     Receive(Samples, SamplesPort, Message(Data, DataBody(1), 5));
     EXPECT_TRUE(Discovery.WaitFor(Rabit::Rtps::GoodbyeOf(Sender, ParticipantMessage(Other), 2)));
+}
+
+TEST_F(GuardedUdpTest, SamplesOfATurnGoToEachPortInOneDatagramAtItsEnd)
+{
+    Receiving here;
+    Receiving there;
+    const Bytes body = Submessage(Data, DataBody(2), 5);
+    ASSERT_TRUE(Turn->Begin(1000));
+    Send(Message(Data, DataBody(1), 5), here.Port());
+    Send(Message(Data, DataBody(1), 5), there.Port());
+    Send(Join({Header(), body}), here.Port());
+    here.SendFence();
+    EXPECT_EQ(here.Next(), Receiving::Fence) << "nothing went before the end";
+    Turn->End();
+    EXPECT_EQ(here.Next(), Join({Message(Data, DataBody(1), 5), body}));
+    EXPECT_EQ(there.Next(), Message(Data, DataBody(1), 5));
+    Send(Join({Header(), body}), here.Port());
+    EXPECT_EQ(here.Next(), Join({Header(), body})) << "after the turn";
+}
+
+// Each of the two does not end like statistics, but both together do.
+TEST_F(GuardedUdpTest, SamplesOfATurnArriveAsTheyWereWrittenIfTogetherTheyEndLikeStatistics)
+{
+    const Bytes beat = Submessage(Heartbeat, HeartbeatBody(1, 1, 1));
+    Bytes sample = Message(Data, DataBody(1, Bytes(100)), 5);
+    sample[sample.size() + beat.size() - StatisticsSize] = Statistics;
+    Receiving socket;
+    ASSERT_TRUE(Turn->Begin(1000));
+    Send(sample, socket.Port());
+    Send(Join({Header(), beat}), socket.Port());
+    Turn->End();
+    const Bytes whole = Join({sample, beat});
+    const Bytes received = socket.Next();
+    ASSERT_GT(received.size(), whole.size());
+    EXPECT_TRUE(std::equal(whole.begin(), whole.end(), received.begin()));
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ private:
         settings.Interfaces = {network->Address};
         settings.Peers.clear();
         const VendorDomain domain(settings, std::make_shared<SessionLog>(settings),
-                                  std::make_shared<DiscoveryTurns>(),
+                                  std::make_shared<DiscoveryTurns>(), std::make_shared<SendingTurn>(),
                                   std::make_shared<Rtps::RecentGoodbyes>(), std::make_shared<Rtps::Ledger>());
     }
 };

@@ -136,7 +136,7 @@ RemoteEndpoint Described(const dds_builtintopic_endpoint_t &announced, const Wri
 
 SessionCore::SessionCore(const TransportSettings &settings, const SessionContext &context)
     : VendorCore(settings, context),
-      _domain(settings, Log(), context.Turns, _goodbyes, _accounts),
+      _domain(settings, Log(), context.Turns, context.Sending, _goodbyes, _accounts),
       _announcements(AnswerGap(settings), _domain.HasCard()),
       _participant(MakeParticipant(settings, _domain.Id(), _domain.HasCard()))
 {

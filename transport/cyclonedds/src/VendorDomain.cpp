@@ -20,6 +20,7 @@
 #include "common/RtpsTraffic.h"
 #include "common/SendingSamples.h"
 #include "envelope/JoinMessages.h"
+#include "envelope/MergedDatagram.h"
 #include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::Cyclone
@@ -40,6 +41,18 @@ bool IsOfSamplesSent(std::span<const std::uint8_t> head)
 bool IsSame(const RabitCyclonePlace &one, const RabitCyclonePlace &other)
 {
     return std::to_array(one.address) == std::to_array(other.address) && one.port == other.port;
+}
+
+SendingTurn::Way WayOf(const RabitCycloneRoute &route, RabitCycloneTo to)
+{
+    std::uint64_t place = 0;
+    for (const unsigned char byte : route.address)
+    {
+        place = place << 8 | byte;
+    }
+    // All datagrams from a socket to the group of samples go one way.
+    return {reinterpret_cast<std::uintptr_t>(route.connection),
+            to == RabitCycloneToSampleGroup ? 0 : place << 16 | route.port};
 }
 
 bool IsGroup(const DirectAnnouncements::Address &address)
@@ -93,7 +106,16 @@ void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span
     }
     for (const RabitCycloneRoute &route : routes)
     {
-        RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size());
+        Send(route, RabitCycloneToHost, datagram);
+    }
+}
+
+void VendorDomain::Send(const RabitCycloneRoute &route, RabitCycloneTo to,
+                        std::span<const std::uint8_t> datagram)
+{
+    if (RabitCycloneSend(_watch, &route, to, datagram.data(), datagram.size()))
+    {
+        OnSent(this, datagram.data(), datagram.size(), datagram.size());
     }
 }
 
@@ -255,18 +277,41 @@ bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t s
                           {
                               return;
                           }
+                          const auto send = [&domain, &to, &bytes](RabitCycloneTo where)
+                          {
+                              domain._sending->IsOfThisThread()
+                                  ? Take(&domain, bytes.data(), bytes.size(), &to, where)
+                                  : domain.Send(to, where, bytes);
+                          };
                           const RabitCycloneWays ways = WaysTo(&domain, to.address);
                           if (ways.group)
                           {
-                              RabitCycloneSend(domain._watch, &to, RabitCycloneToSampleGroup, bytes.data(),
-                                               bytes.size());
+                              send(RabitCycloneToSampleGroup);
                           }
                           if (ways.host)
                           {
-                              RabitCycloneSend(domain._watch, &to, RabitCycloneToHost, bytes.data(),
-                                               bytes.size());
+                              send(RabitCycloneToHost);
                           }
                       });
+}
+
+bool VendorDomain::IsInTurn(void *self)
+{
+    return static_cast<VendorDomain *>(self)->_sending->IsOfThisThread();
+}
+
+void VendorDomain::Take(void *self, const unsigned char *datagram, std::size_t size,
+                        const RabitCycloneRoute *route, RabitCycloneTo to)
+{
+    auto &domain = *static_cast<VendorDomain *>(self);
+    const auto make = [&domain, route, to](std::size_t most)
+    {
+        return std::make_unique<Rtps::MergedDatagram>(
+            most, [&domain, way = *route, to](std::vector<std::uint8_t> &message)
+            { RabitCycloneSend(domain._watch, &way, to, message.data(), message.size()); });
+    };
+    const auto grown = domain._sending->Take(WayOf(*route, to), {datagram, size}, make);
+    domain._log->SentSamples(grown.Datagrams, grown.Bytes);
 }
 
 RabitCycloneWays VendorDomain::WaysTo(void *self, const unsigned char *address)
@@ -390,11 +435,12 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
 }
 
 VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                           const std::shared_ptr<DiscoveryTurns> &turns,
+                           const std::shared_ptr<DiscoveryTurns> &turns, std::shared_ptr<SendingTurn> sending,
                            std::shared_ptr<Rtps::RecentGoodbyes> goodbyes,
                            std::shared_ptr<Rtps::Ledger> accounts)
     : _id(static_cast<dds_domainid_t>(settings.Domain), FirstOther),
       _log(log),
+      _sending(std::move(sending)),
       _multicast(IsMulticastForData(settings)),
       _secured(settings.Security.has_value()),
       _hasPeers(!settings.Peers.empty()),
@@ -411,9 +457,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
 {
     if (_secured)
     {
-        _keys.Start(
-            [this](const auto &route, auto datagram)
-            { RabitCycloneSend(_watch, &route, RabitCycloneToHost, datagram.data(), datagram.size()); });
+        _keys.Start([this](const auto &route, auto datagram) { Send(route, RabitCycloneToHost, datagram); });
     }
     _meets = GuardMode(settings) == Rtps::RtpsGuard::Mode::Full;
     // The threads are made before the vendor calls this object: if one cannot be, nothing is to be undone.
@@ -468,6 +512,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                                 .may = &MaySend,
                                 .holds = [] { return HeldDatagrams::OfThisThread() != nullptr; },
                                 .hold = &Hold,
+                                .takes = &IsInTurn,
+                                .take = &Take,
                                 .waysTo = &WaysTo,
                                 .mayGo = &MayGo,
                                 .sent = &OnSent,

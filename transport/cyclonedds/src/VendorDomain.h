@@ -18,6 +18,7 @@
 #include "common/KeyExchangeThread.h"
 #include "common/ProcessNumber.h"
 #include "common/RecentGoodbyes.h"
+#include "common/SendingTurn.h"
 #include "common/SessionLog.h"
 #include "guard/AuthenticationThread.h"
 #include "guard/RtpsGuard.h"
@@ -32,10 +33,10 @@ class VendorDomain
 {
 public:
     // Throws TransportError. The vendor's messages about the domain go to the log. The exchange of cards
-    // waits for `turns`. `goodbyes`, `accounts`: as RtpsGuard.
+    // waits for `turns`; `sending` keeps the samples of its thread. `goodbyes`, `accounts`: as RtpsGuard.
     VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
-                 const std::shared_ptr<DiscoveryTurns> &turns, std::shared_ptr<Rtps::RecentGoodbyes> goodbyes,
-                 std::shared_ptr<Rtps::Ledger> accounts);
+                 const std::shared_ptr<DiscoveryTurns> &turns, std::shared_ptr<SendingTurn> sending,
+                 std::shared_ptr<Rtps::RecentGoodbyes> goodbyes, std::shared_ptr<Rtps::Ledger> accounts);
     ~VendorDomain();
     VendorDomain(const VendorDomain &) = delete;
     VendorDomain &operator=(const VendorDomain &) = delete;
@@ -75,6 +76,9 @@ private:
                         const RabitCycloneRoute *route);
     static bool Hold(void *self, const unsigned char *datagram, std::size_t size,
                      const RabitCycloneRoute *route);
+    static bool IsInTurn(void *self);
+    static void Take(void *self, const unsigned char *datagram, std::size_t size,
+                     const RabitCycloneRoute *route, RabitCycloneTo to);
     static RabitCycloneWays WaysTo(void *self, const unsigned char *address);
     static bool MayGo(void *self, const RabitCyclonePlace *place, std::size_t size, bool samples);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
@@ -89,6 +93,8 @@ private:
     void Forget(const Rtps::GuidPrefix &participant);
     // Returns the size of the part of a datagram that the vendor may see.
     std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size, const Rtps::HostAddress &from);
+    // Sends a datagram that is not counted yet.
+    void Send(const RabitCycloneRoute &route, RabitCycloneTo to, std::span<const std::uint8_t> datagram);
     // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram);
     // Runs on the meeting's thread.
@@ -99,6 +105,7 @@ private:
     const ProcessNumber<VendorDomain> _id;
     void *_watch = nullptr;  // returned by RabitCycloneWatch
     const std::shared_ptr<SessionLog> _log;
+    const std::shared_ptr<SendingTurn> _sending;
     const bool _multicast;  // reaches all peers but those that announce themselves to us alone
     const bool _secured;
     const bool _hasPeers;  // peers are listed; they may not hear the group

@@ -100,6 +100,24 @@ static bool MayGo(const struct Watch *watch, const ddsi_locator_t *destination, 
            watch->calls.mayGo(watch->calls.argument, &place, size, samples);
 }
 
+static struct RabitCycloneRoute RouteTo(ddsi_tran_conn_t connection, const ddsi_locator_t *destination)
+{
+    struct RabitCycloneRoute route = {.connection = connection, .port = destination->port};
+    memcpy(route.address, destination->address + AddressAt, sizeof route.address);
+    return route;
+}
+
+/* Returns a copy of the datagram, to be freed; NULL if there is no memory. */
+static unsigned char *CopyOf(size_t size, size_t parts, const ddsrt_iovec_t *part)
+{
+    unsigned char *const datagram = malloc(size);
+    if (datagram != NULL)
+    {
+        Gather(datagram, size, parts, part);
+    }
+    return datagram;
+}
+
 static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connection,
                               const ddsi_locator_t *destination, size_t parts, const ddsrt_iovec_t *part,
                               uint32_t flags)
@@ -113,8 +131,7 @@ static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connec
                    : 0;
     }
     const ddsrt_iovec_t whole = {datagram, Gather(datagram, sizeof datagram, parts, part)};
-    struct RabitCycloneRoute route = {.connection = connection, .port = destination->port};
-    memcpy(route.address, destination->address + AddressAt, sizeof route.address);
+    const struct RabitCycloneRoute route = RouteTo(connection, destination);
     if (!watch->calls.may(watch->calls.argument, datagram, size, &route) ||
         !MayGo(watch, destination, size, false))
     {
@@ -132,17 +149,38 @@ static bool Hold(const struct Watch *watch, ddsi_tran_conn_t connection, const d
         return false;
     }
     const size_t size = SizeOf(parts, part);
-    unsigned char *const datagram = malloc(size);
-    if (datagram == NULL)
-    {
-        return false;
-    }
-    Gather(datagram, size, parts, part);
-    struct RabitCycloneRoute route = {.connection = connection, .port = destination->port};
-    memcpy(route.address, destination->address + AddressAt, sizeof route.address);
-    const bool held = watch->calls.hold(watch->calls.argument, datagram, size, &route);
+    unsigned char *const datagram = CopyOf(size, parts, part);
+    const struct RabitCycloneRoute route = RouteTo(connection, destination);
+    const bool held = datagram != NULL && watch->calls.hold(watch->calls.argument, datagram, size, &route);
     free(datagram);
     return held;
+}
+
+/* Sends a datagram of samples, or keeps it for the end of this thread's turn. Returns the bytes that were
+ * sent or kept. */
+static ssize_t WriteSamples(const struct Watch *watch, ddsi_tran_conn_t connection,
+                            const ddsi_locator_t *destination, enum RabitCycloneTo to, size_t parts,
+                            const ddsrt_iovec_t *part, uint32_t flags, const unsigned char *head,
+                            size_t headSize)
+{
+    if (destination->kind == NN_LOCATOR_KIND_UDPv4 && watch->calls.takes(watch->calls.argument))
+    {
+        const size_t whole = SizeOf(parts, part);
+        unsigned char *const datagram = CopyOf(whole, parts, part);
+        if (datagram != NULL)
+        {
+            const struct RabitCycloneRoute route = RouteTo(connection, destination);
+            watch->calls.take(watch->calls.argument, datagram, whole, &route, to);
+            free(datagram);
+            return (ssize_t)whole;
+        }
+    }
+    const ssize_t size = watch->write(connection, destination, parts, part, flags);
+    if (size > 0)
+    {
+        watch->calls.sent(watch->calls.argument, head, headSize, (size_t)size);
+    }
+    return size;
 }
 
 static bool IsGroup(const ddsi_locator_t *locator)
@@ -170,11 +208,8 @@ static void WriteToGroup(const struct Watch *watch, ddsi_tran_conn_t connection,
         (ddsrt_iovec_t){(unsigned char *)part[0].iov_base + RtpsHeaderSize, part[0].iov_len - RtpsHeaderSize};
     memcpy(all + count, part + 1, (parts - 1) * sizeof *part);
     count += parts - 1;
-    const ssize_t size = watch->write(connection, &watch->domain->loc_default_mc, count, all, flags);
-    if (size > 0)
-    {
-        watch->calls.sent(watch->calls.argument, head, headSize, (size_t)size);
-    }
+    WriteSamples(watch, connection, &watch->domain->loc_default_mc, RabitCycloneToSampleGroup, count, all,
+                 flags, head, headSize);
 }
 
 static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *destination, size_t parts,
@@ -207,12 +242,19 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
     {
         WriteToGroup(&watch, connection, parts, part, flags, head, filled, participant);
     }
-    const ssize_t size = isDiscovery ? WriteDiscovery(&watch, connection, destination, parts, part, flags)
-                         : ways.host ? watch.write(connection, destination, parts, part, flags)
-                                     : 0;
-    if (size > 0)
+    ssize_t size = 0;
+    if (isDiscovery)
     {
-        watch.calls.sent(watch.calls.argument, head, filled, (size_t)size);
+        size = WriteDiscovery(&watch, connection, destination, parts, part, flags);
+        if (size > 0)
+        {
+            watch.calls.sent(watch.calls.argument, head, filled, (size_t)size);
+        }
+    }
+    else if (ways.host)
+    {
+        size = WriteSamples(&watch, connection, destination, RabitCycloneToHost, parts, part, flags, head,
+                            filled);
     }
     /* Datagrams that are not sent are reported to the vendor as sent. */
     return size == 0 ? (ssize_t)whole : size;
@@ -478,7 +520,7 @@ int RabitCycloneDestinations(const struct ddsi_sertype *type, const ddsi_guid_t 
     return count;
 }
 
-void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
+bool RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
                       const unsigned char *datagram, size_t size)
 {
     const struct Watch *of = watch;
@@ -491,10 +533,7 @@ void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, 
         memcpy(destination.address + AddressAt, route->address, sizeof route->address);
     }
     const ddsrt_iovec_t whole = {(void *)datagram, size};
-    if (of->write(route->connection, &destination, 1, &whole, 0) > 0)
-    {
-        of->calls.sent(of->calls.argument, datagram, size < HeadSize ? size : HeadSize, size);
-    }
+    return of->write(route->connection, &destination, 1, &whole, 0) > 0;
 }
 
 struct ddsi_domaingv *RabitCycloneDomainOf(const void *watch)

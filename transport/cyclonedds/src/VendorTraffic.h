@@ -49,6 +49,11 @@ extern "C"
         bool (*holds)(void);
         bool (*hold)(void *argument, const unsigned char *datagram, size_t size,
                      const struct RabitCycloneRoute *route);
+        /* takes: true if this thread's datagrams of samples are to be passed to `take`, which keeps them,
+           counts them, and sends them later by RabitCycloneSend. */
+        bool (*takes)(void *argument);
+        void (*take)(void *argument, const unsigned char *datagram, size_t size,
+                     const struct RabitCycloneRoute *route, enum RabitCycloneTo to);
         /* Where a datagram of samples for that address alone goes: to the host, to the group of samples, or
            both. */
         struct RabitCycloneWays (*waysTo)(void *argument, const unsigned char *address);
@@ -70,9 +75,10 @@ extern "C"
     void RabitCycloneUnwatch(void *watch);
     struct ddsi_domaingv *RabitCycloneDomainOf(const void *watch);
 
-    /* Sends a datagram of ours that way or, as `to` says, from the same socket to the group of samples; `may`
-       is not called. Valid until the domain is deleted. */
-    void RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
+    /* Sends a datagram of ours that way or, as `to` says, from the same socket to the group of samples;
+       neither `may` nor `sent` is called. Returns true if it was given to the socket. Valid until the domain
+       is deleted. */
+    bool RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
                           const unsigned char *datagram, size_t size);
 
     /* Sends one zero byte to the own discovery address, so that a receiving thread calls `received`. */

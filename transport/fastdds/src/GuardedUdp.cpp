@@ -56,7 +56,7 @@ public:
                  descriptor.Chosen().Goodbyes, descriptor.Chosen().Accounts),
           _input(descriptor.Chosen().GroupPort,
                  AwaitsProtectedAnnouncements && descriptor.Chosen().Authentication != nullptr),
-          _output(_descriptor.Chosen(), _guard, *low_level_transport_),
+          _output(_descriptor.Chosen(), _guard, *low_level_transport_, _sending),
           _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr)
     {
         if (Keys() != nullptr)

@@ -21,6 +21,7 @@
 #include "Vendor.h"
 #include "common/KeyExchangeThread.h"
 #include "common/OwnNetworks.h"
+#include "common/SendingTurn.h"
 #include "guard/AuthenticationThread.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/MeetingThread.h"
@@ -53,6 +54,8 @@ public:
         std::function<void(std::uint32_t port)> OnDeaf{};
         // Called, on any thread, each time that a datagram is given to a socket, with the numbers to count.
         std::function<void(bool samples, std::size_t datagrams, std::size_t bytes)> OnSent{};
+        // The turn that keeps the datagrams of samples of its thread.
+        std::shared_ptr<SendingTurn> Sending = std::make_shared<SendingTurn>();
         // Called, on the receiving thread, when the participant should be announced to a peer that has not
         // heard it.
         std::function<void()> Announce{};

@@ -115,6 +115,7 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
 {
     auto attributes = MakeParticipantAttributes(settings, Log(),
                                                 {.OnDeaf = [this](auto port) { _deafAt = port; },
+                                                 .Sending = context.Sending,
                                                  .Announce = [this] { Announce(); },
                                                  .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
                                                  .Keys = _keys,

@@ -1,11 +1,24 @@
 #include "SocketOutput.h"
 
 #include <algorithm>
+#include <memory>
+
+#include "common/RtpsWriter.h"
+#include "envelope/MergedDatagram.h"
+#include "guard/RtpsMessage.h"
 
 namespace Rabit::FastDds
 {
 
 using namespace Rtps;
+
+namespace
+{
+
+// A socket that does not block takes no time.
+constexpr std::chrono::milliseconds KeptTimeout{100};
+
+}  // namespace
 
 std::uint32_t SocketOutput::NumberOf(const rtps::SenderResource *socket)
 {
@@ -114,10 +127,43 @@ bool SocketOutput::Send(rtps::SenderResource *socket, const Destinations &destin
             _allowed.push_back(destination);
         }
     }
+    if (samples && _settings.Sending->IsOfThisThread())
+    {
+        for (const rtps::Locator_t &destination : _allowed)
+        {
+            Keep({socket, destination}, datagram);
+        }
+        return true;
+    }
     _settings.OnSent(samples, _allowed.size(), _allowed.size() * datagram.size());
     rtps::Locators first(_allowed.cbegin());
     rtps::Locators last(_allowed.cend());
     return ChainedUdp::SendOn(*socket, datagram, first, last, timeout);
+}
+
+void SocketOutput::Keep(const Route &route, std::span<const std::uint8_t> datagram)
+{
+    const auto make = [this, &route](std::size_t most)
+    {
+        return std::make_unique<MergedDatagram>(
+            most, [this, route](std::vector<std::uint8_t> &message) { SendKept(route, message); });
+    };
+    const auto grown = _settings.Sending->Take({NumberOf(route), 0}, datagram, make);
+    _settings.OnSent(true, grown.Datagrams, grown.Bytes);
+}
+
+void SocketOutput::SendKept(const Route &route, std::vector<std::uint8_t> &message)
+{
+    // The last parts of a merged message may end like statistics together.
+    while (EndsLikeStatistics(message) && SizeWithoutStatistics(message) == message.size())
+    {
+        AppendSubmessageHeader(message, SubmessageKind::Pad, 0);
+    }
+    const std::lock_guard lock(_sending);
+    _allowed.assign(1, route.second);
+    rtps::Locators first(_allowed.cbegin());
+    rtps::Locators last(_allowed.cend());
+    ChainedUdp::SendOn(*route.first, message, first, last, std::chrono::steady_clock::now() + KeptTimeout);
 }
 
 }  // namespace Rabit::FastDds

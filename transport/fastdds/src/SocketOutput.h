@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,19 +24,23 @@ namespace Rabit::FastDds
 // Knows which of the vendor's sockets sends to which destinations, and which routes lead to a participant.
 // Sends samples to a group in place of hosts that the kernel cannot send to yet (HardwareAddresses).
 //
-// Not thread-safe: GuardedUdp calls all functions with one lock held. They call the sockets, OnSent and the
-// guard. The vendor owns the sockets. SessionCore stops all threads that use them before it removes the
-// participant.
+// Not thread-safe: GuardedUdp calls all functions with one lock held, which is also taken to send what a turn
+// has kept. They call the sockets, OnSent and the guard. The vendor owns the sockets. SessionCore stops all
+// threads that use them before it removes the participant.
 class SocketOutput
 {
 public:
     using TimePoint = std::chrono::steady_clock::time_point;
     using Destinations = std::vector<rtps::Locator_t>;
 
-    // The arguments must outlive the object. `udp`: the transport of the sockets.
+    // The arguments must outlive the object. `udp`: the transport of the sockets. `sending`: the lock.
     SocketOutput(const GuardedUdpDescriptor::Settings &settings, Rtps::RtpsGuard &guard,
-                 rtps::TransportInterface &udp)
-        : _settings(settings), _guard(guard), _udp(udp), _cardRoutes(settings.AnnouncementPeriod)
+                 rtps::TransportInterface &udp, std::mutex &sending)
+        : _settings(settings),
+          _guard(guard),
+          _udp(udp),
+          _sending(sending),
+          _cardRoutes(settings.AnnouncementPeriod)
     {
     }
 
@@ -60,8 +65,8 @@ public:
     // Number of datagrams that Send will send.
     std::size_t DatagramsTo(const rtps::SenderResource *socket, const Destinations &destinations);
     // Sends to those of the destinations to which the socket sends and to which the datagram may go
-    // (Ledger.h), and counts the datagrams (OnSent). `samples`: it has samples. Returns false if the socket
-    // fails.
+    // (Ledger.h), and counts the datagrams (OnSent). `samples`: it has samples. In a turn of this thread,
+    // such a datagram is kept for its end. Returns false if the socket fails.
     bool Send(rtps::SenderResource *socket, const Destinations &destinations,
               std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout);
 
@@ -69,10 +74,14 @@ private:
     bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const;
     std::uint32_t NumberOf(const rtps::Locator_t &destination);
     bool MayGo(const rtps::Locator_t &destination, std::size_t bytes, bool samples, TimePoint now);
+    void Keep(const Route &route, std::span<const std::uint8_t> datagram);
+    // Takes the lock.
+    void SendKept(const Route &route, std::vector<std::uint8_t> &message);
 
     const GuardedUdpDescriptor::Settings &_settings;
     Rtps::RtpsGuard &_guard;
     rtps::TransportInterface &_udp;
+    std::mutex &_sending;
     HardwareAddresses _addresses;
     Rtps::CardRoutes<Route> _cardRoutes;
     RecentNumbers<rtps::Locator_t> _destinations;

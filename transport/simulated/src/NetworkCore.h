@@ -66,6 +66,10 @@ public:
     // Bytes of one such datagram on the air, to all destinations.
     std::size_t BytesOfPart(const ParticipantState &participant, const WriterState &writer,
                             const Sample &sample) const;
+    // TransportSession::BeginTurn, TakeTurnDestinations, EndTurn
+    bool BeginTurn(ParticipantState &participant, std::size_t most);
+    TurnDestinations TakeTurnDestinations(ParticipantState &participant);
+    void EndTurn(ParticipantState &participant);
     int MatchedReaders(const WriterState &writer) const;
     // DiscoveryTurns::Exchange of that participant.
     std::size_t NextCardBytes(ParticipantState &participant);
@@ -116,6 +120,12 @@ private:
     void SendTogether(const ParticipantState &from, Letters letters, bool multicast,
                       std::uint32_t partsBefore = 0);
     void SendAlone(const ParticipantState &from, Letter letter);
+
+    // SendingTurn.cpp
+    void Keep(ParticipantState &from, Letters letters, bool multicast);
+    void KeepPacket(ParticipantState &from, ParticipantId to, Letters letters);
+    void SendKept(ParticipantState &from);
+    void SendPacket(const ParticipantState &from, Letters letters);
     void Transmit(const SimulatedFaults &faults, ParticipantId from, ParticipantId to, Datagram datagram,
                   Time processing);
 

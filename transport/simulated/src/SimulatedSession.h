@@ -2,6 +2,7 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <cstddef>
 #include <memory>
 
 #include "NetworkCore.h"
@@ -23,6 +24,9 @@ public:
                                                   SampleHandler handler) override;
     TransportCounters Counters() const override;
     DiscoveryTurns *Discovery() override { return &_participant->Turns; }
+    bool BeginTurn(std::size_t mostBytes) override { return _core->BeginTurn(*_participant, mostBytes); }
+    TurnDestinations TakeTurnDestinations() override { return _core->TakeTurnDestinations(*_participant); }
+    void EndTurn() override { _core->EndTurn(*_participant); }
     std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
     {
         return _participant->Topics.RemoteOn(topic);

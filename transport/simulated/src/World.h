@@ -108,6 +108,23 @@ struct Flight
     std::map<ParticipantId, std::uint32_t> Lost;  // packets lost, by receiver
 };
 
+// Letters that go in one packet at the end of a turn.
+struct KeptPacket
+{
+    ParticipantId To = Nobody;  // Nobody: by multicast
+    Simulated::Letters Letters;
+    std::uint64_t Bytes = 0;  // on the air
+};
+
+// A turn of a session (TransportSession::BeginTurn).
+struct Turn
+{
+    bool IsOpen = false;
+    std::size_t Most = 0;  // bytes of a packet of several samples
+    TurnDestinations Taken;
+    std::vector<KeptPacket> Packets;
+};
+
 // A writer's view of a matched reader.
 struct ReaderProxy
 {
@@ -195,6 +212,7 @@ struct ParticipantState
     std::shared_ptr<const EndpointList> Endpoints = std::make_shared<EndpointList>();
     int Announced = 0;  // times
 
+    Simulated::Turn Turn;
     Rtps::CardExchange Cards;
     std::optional<std::chrono::nanoseconds> CardsAt;  // when the card timer is due
     std::uint64_t CardTimer = 0;                      // number of the timer that is valid

@@ -105,8 +105,16 @@ bool NetworkCore::Write(ParticipantState &participant, WriterState &writer,
             letters.push_back({id.Participant, MakeData(writer, id, reader, sample)});
         }
     }
-    SendTogether(participant, std::move(letters), node == nullptr && IsMulticastForData(participant.Settings),
-                 partsBefore);
+    const bool multicast = node == nullptr && IsMulticastForData(participant.Settings);
+    if (participant.Turn.IsOpen && sample->Datagrams == 1)
+    {
+        Keep(participant, std::move(letters), multicast);
+    }
+    else
+    {
+        SendKept(participant);  // earlier samples
+        SendTogether(participant, std::move(letters), multicast, partsBefore);
+    }
     LetGo(writer);
     AwaitHeartbeat(writer, _timings.HeartbeatPeriod);
     return true;
