@@ -96,10 +96,8 @@ void AirSchedule::StopWaiting(AirStream &stream)
     {
         QueueOf(stream.Class).Remove(stream);
     }
-    if (_kept == &stream)
-    {
-        _kept = nullptr;
-    }
+    _kept = _kept == &stream ? nullptr : _kept;
+    _early = _early == &stream ? nullptr : _early;
 }
 
 void AirSchedule::Ready(StreamId id, std::size_t bytes)
@@ -122,6 +120,52 @@ void AirSchedule::Promise(StreamId id, std::size_t bytes, Duration deadline)
     _promised = &At(id);
     _promised->Bytes = bytes;
     _deadline = deadline;
+}
+
+void AirSchedule::MayRide(StreamId id, std::size_t bytes)
+{
+    _early = &At(id);
+    _early->Bytes = bytes;
+}
+
+bool AirSchedule::Rides(const AirStream &stream, const Destinations &to, std::size_t room, Duration now)
+{
+    if (stream.Destinations != to.Number || stream.Bytes > to.Count * (room + JoinedHeaders) ||
+        _budget.Room(stream.Bytes, now) < stream.Bytes)
+    {
+        return false;
+    }
+    const bool isPromised = _promised == nullptr || _promised == &stream;
+    return isPromised || _budget.WhenFits(0, now) + _budget.TimeOf(stream.Bytes) <= _deadline - PromiseMargin;
+}
+
+std::optional<StreamId> AirSchedule::NextRider(TrafficClass first, const Destinations &to, std::size_t room,
+                                               Duration now)
+{
+    if (to.Number == 0 || _budget.IsUnlimited() || _kept != nullptr)
+    {
+        return std::nullopt;
+    }
+    const auto rider = [&](const AirStream &stream) {
+        return Rides(stream, to, room, now) ? std::optional(StreamId{stream.Index, stream.Life})
+                                            : std::nullopt;
+    };
+    if (_early != nullptr && rider(*_early))
+    {
+        return rider(*_early);
+    }
+    for (std::size_t i = 0; i < TrafficClassCount; ++i)
+    {
+        const auto traffic = static_cast<TrafficClass>(i);
+        const bool isEntitled =
+            first == TrafficClass::Presence || traffic == first || _shares.HasCredit(traffic);
+        if (!_queues[i].IsEmpty() && isEntitled)
+        {
+            const AirStream &stream = _queues[i].First();
+            return _queues[i].MayFollow(stream) ? rider(stream) : std::nullopt;
+        }
+    }
+    return std::nullopt;
 }
 
 ClassShares::Waiting AirSchedule::Waiting() const

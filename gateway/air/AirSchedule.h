@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "air/AirBudget.h"
+#include "air/AirCost.h"
 #include "air/AirStream.h"
 #include "air/ClassShares.h"
 #include "air/FairQueue.h"
@@ -36,6 +37,9 @@ namespace Rabit
 // ClassShares chooses the class, FairQueue the stream in it, and AirBudget the time. An idle stream's share
 // goes to the others. A chosen stream whose datagram does not fit the budget yet keeps its turn. For the
 // first 250 ms commands that fit may pass it, for a second promised datagrams, then nothing.
+//
+// Behind the datagram of the chosen stream, other streams may ride: their datagrams join it, without headers
+// of their own (NextRider).
 //
 // One stream may promise its next datagram by a deadline (Promise). A datagram that would end after the
 // deadline lets the promised one go first, whatever the classes' shares are.
@@ -87,6 +91,30 @@ public:
     // One stream at a time: a later promise replaces an earlier one.
     void Promise(StreamId id, std::size_t bytes, Duration deadline);
 
+    // Bytes of the headers that a datagram lacks once it has joined another one.
+    static constexpr std::size_t JoinedHeaders = AirCost::IpAndUdp + AirCost::RtpsHeader;
+
+    TrafficClass ClassOf(StreamId id) const { return At(id).Class; }
+    // With a limit: the stream may send a datagram of `bytes` bytes, more than 0, behind another one before
+    // it is due. Holds until it sends, or NotReady. One stream at a time.
+    void MayRide(StreamId id, std::size_t bytes);
+    // Where a datagram went.
+    struct Destinations
+    {
+        std::uint64_t Number = 0;  // equal for equal sets of destinations; 0: not known
+        std::size_t Count = 0;     // of the set
+    };
+    // The last datagram of the stream went there.
+    void Went(StreamId id, const Destinations &to) { At(id).Destinations = to.Number; }
+    // The stream whose datagram is to join one of class `first` that goes there and has room for `room` bytes
+    // more for each destination: the stream that MayRide, or else the next one of the most important class
+    // that may go on. A class may if it has credit, if it is `first`, and behind a beat: so it overdraws its
+    // credit by a datagram at most. Empty: that stream's last datagram went elsewhere, or its next one does
+    // not fit the datagram or the budget, would make a promised one late, or would take more than the share
+    // of the stream. No stream rides without a limit, and while a large datagram waits.
+    std::optional<StreamId> NextRider(TrafficClass first, const Destinations &to, std::size_t room,
+                                      Duration now);
+
     // The stream that is to send one datagram now; empty: none before NextDue. Returns the same stream until
     // something changes.
     std::optional<StreamId> Next(Duration now);
@@ -115,6 +143,7 @@ private:
     AirStream *KeptForLong(Duration now) const;
     Duration MustGoBy(const AirStream &other, Duration now) const;
     AirStream &Chosen(Duration now);
+    bool Rides(const AirStream &stream, const Destinations &to, std::size_t room, Duration now);
     AirStream *Passing(const AirStream &chosen, Duration now, Duration &when);
 
     AirBudget _budget;
@@ -125,6 +154,7 @@ private:
     std::array<std::uint64_t, TrafficClassCount> _sent{};
     AirStream *_kept = nullptr;  // the chosen stream whose datagram does not fit yet
     Duration _keptSince{0};
+    AirStream *_early = nullptr;  // may ride
     AirStream *_promised = nullptr;
     Duration _deadline{0};  // of the promised datagram
 };

@@ -18,8 +18,9 @@ struct AirStream
     bool IsThere = false;
     TrafficClass Class = TrafficClass::Bulk;
     double Weight = 1.0;
-    std::size_t Bytes = 0;   // of its next datagram
-    std::uint64_t Sent = 0;  // bytes in all
+    std::size_t Bytes = 0;           // of its next datagram
+    std::uint64_t Sent = 0;          // bytes in all
+    std::uint64_t Destinations = 0;  // of its last datagram; 0: not known
 
     // Used by FairQueue.
     double Tag = 0.0;                    // virtual time at which its next datagram begins

@@ -38,6 +38,12 @@ public:
     // Returns the next class. At least one must wait. Begins a round if needed; returns the same until bytes
     // are charged or another class waits.
     TrafficClass Next(const Waiting &waiting);
+    // True if the class may send in this round.
+    bool HasCredit(TrafficClass traffic) const
+    {
+        return (traffic == TrafficClass::Presence ? _presence : _credit[static_cast<std::size_t>(traffic)]) >
+               0;
+    }
     // The class sent `bytes` bytes; `waiting` are the classes that wait.
     void Charge(TrafficClass traffic, std::size_t bytes, const Waiting &waiting);
 

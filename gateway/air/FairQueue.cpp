@@ -72,6 +72,7 @@ void FairQueue::Charge(AirStream &stream, std::size_t bytes)
     stream.Tag = std::max(stream.Tag, _now);
     _now = stream.Tag;
     stream.Tag += static_cast<double>(bytes) / stream.Weight;
+    _end = stream.Tag;
     if (stream.HeapPlace != AirStream::NotWaiting)
     {
         Sink(stream.HeapPlace);

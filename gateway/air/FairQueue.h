@@ -22,6 +22,10 @@ public:
     // The stream whose turn it is. The queue must not be empty.
     AirStream &First() const { return *_heap.front(); }
 
+    // True if the share of the stream allows it to send right behind the last one. While others that have
+    // just sent have nothing, it could get ahead of them otherwise.
+    bool MayFollow(const AirStream &stream) const { return stream.Tag <= _end; }
+
     void Add(AirStream &stream);
     void Remove(AirStream &stream);
     // The stream has sent `bytes` bytes; it need not be in the queue.
@@ -35,6 +39,7 @@ private:
 
     std::vector<AirStream *> _heap;
     double _now = 0.0;  // virtual time: the tag of the stream that sent last
+    double _end = 0.0;  // virtual time at which that stream's next datagram begins
     std::uint64_t _arrivals = 0;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -577,6 +578,192 @@ TEST_F(PromiseTest, EndsWithItsStream)
     Schedule.Remove(Beat);
     EXPECT_EQ(Schedule.Next(2s), bulk);
     EXPECT_THROW(Schedule.Promise(Beat, 150, 3s), std::out_of_range);
+}
+
+// A stream whose last datagram went to a group, or elsewhere, with a budget that leaves room.
+class AirRiderTest : public AirScheduleTest
+{
+protected:
+    AirRiderTest() { Schedule.SetBudget(5000, 0ns); }
+    StreamId AddThatWent(TrafficClass traffic, std::size_t bytes, const AirSchedule::Destinations &to,
+                         double weight = 1.0)
+    {
+        const StreamId id = Add(traffic, bytes, weight);
+        Schedule.Went(id, to);
+        return id;
+    }
+    std::optional<StreamId> Rider(std::size_t room = 1000, TrafficClass first = TrafficClass::Presence)
+    {
+        return Schedule.NextRider(first, Group, room, 0ns);
+    }
+
+    const AirSchedule::Destinations Group{1, 1};
+    const AirSchedule::Destinations Elsewhere{2, 1};
+};
+
+TEST_F(AirRiderTest, TheNextStreamRidesIfItGoesToTheSamePlace)
+{
+    EXPECT_FALSE(Rider());
+    const StreamId pose = AddThatWent(TrafficClass::Telemetry, 148, Group);
+    EXPECT_EQ(Rider(), pose);
+    const StreamId beat = AddThatWent(TrafficClass::Presence, 150, Group);
+    EXPECT_EQ(Rider(), beat);
+    const StreamId command = Add(TrafficClass::Command, 160);
+    Schedule.Sent(beat, 100, 0ns);
+    EXPECT_FALSE(Rider()) << "the next one went nowhere yet";
+    Schedule.Went(command, Elsewhere);
+    EXPECT_FALSE(Rider());
+    Schedule.NotReady(command);
+    EXPECT_EQ(Rider(), pose);
+    EXPECT_FALSE(Schedule.NextRider(TrafficClass::Presence, {}, 1000, 0ns))
+        << "behind a datagram that was not kept";
+}
+
+TEST_F(AirRiderTest, ARiderNeedsRoomForItsBytesButNotForItsHeaders)
+{
+    AddThatWent(TrafficClass::Telemetry, 148, Group);
+    EXPECT_TRUE(Rider(148 - AirSchedule::JoinedHeaders));
+    EXPECT_FALSE(Rider(148 - AirSchedule::JoinedHeaders - 1));
+}
+
+TEST_F(AirRiderTest, TheRoomIsThatOfEachCopy)
+{
+    const AirSchedule::Destinations three{3, 3};
+    AddThatWent(TrafficClass::Telemetry, 3 * 148, three);
+    EXPECT_TRUE(Schedule.NextRider(TrafficClass::Presence, three, 148 - AirSchedule::JoinedHeaders, 0ns));
+    EXPECT_FALSE(
+        Schedule.NextRider(TrafficClass::Presence, three, 148 - AirSchedule::JoinedHeaders - 1, 0ns));
+}
+
+TEST_F(AirRiderTest, ARiderFitsTheBudgetAsIfItWentAlone)
+{
+    const StreamId pose = AddThatWent(TrafficClass::Telemetry, 148, Group);
+    Schedule.SentPast(4800, 0ns);
+    EXPECT_EQ(Rider(), pose);
+    Schedule.SentPast(100, 0ns);
+    EXPECT_FALSE(Rider());
+}
+
+TEST_F(AirRiderTest, WithoutALimitNobodyRides)
+{
+    AirSchedule unlimited(1428);
+    const StreamId id = unlimited.AddStream(TrafficClass::State);
+    unlimited.Ready(id, 100);
+    unlimited.Went(id, Group);
+    EXPECT_FALSE(unlimited.NextRider(TrafficClass::State, Group, 1000, 0ns));
+}
+
+TEST_F(AirRiderTest, AStreamThatMayRideIsNotChosenButRides)
+{
+    const StreamId beat = Schedule.AddStream(TrafficClass::Presence);
+    Schedule.Went(beat, Group);
+    Schedule.MayRide(beat, 150);
+    EXPECT_FALSE(Schedule.Next(0ns));
+    const StreamId pose = AddThatWent(TrafficClass::Telemetry, 148, Group);
+    EXPECT_EQ(Schedule.Next(0ns), pose);
+    Schedule.Sent(pose, 148, 0ns);
+    EXPECT_EQ(Rider(), beat);
+    Schedule.Sent(beat, 102, 0ns);
+    EXPECT_FALSE(Rider()) << "it has sent";
+    Schedule.MayRide(beat, 150);
+    Schedule.NotReady(beat);
+    EXPECT_FALSE(Rider());
+}
+
+TEST_F(AirRiderTest, AnEarlyStreamThatDoesNotFitKeepsNobodyFromRiding)
+{
+    const StreamId beat = Schedule.AddStream(TrafficClass::Presence);
+    Schedule.Went(beat, Group);
+    Schedule.MayRide(beat, 500);
+    const StreamId pose = AddThatWent(TrafficClass::Telemetry, 148, Group);
+    EXPECT_EQ(Rider(200), pose);
+}
+
+TEST_F(AirRiderTest, ARiderDoesNotMakeAPromisedDatagramLate)
+{
+    const StreamId beat = Schedule.AddStream(TrafficClass::Presence);
+    const StreamId pose = AddThatWent(TrafficClass::Telemetry, 400, Group);
+    Schedule.Promise(beat, 150, 500ms);
+    EXPECT_EQ(Rider(), pose);
+    Schedule.SentPast(2000, 0ns);  // takes 420 ms
+    EXPECT_FALSE(Rider());
+}
+
+// A message with one place to wait has nothing right after it was sent.
+TEST_F(AirRiderTest, AStreamDoesNotRideAheadOfItsShareWhileTheOthersHaveNothing)
+{
+    const StreamId heavy = AddThatWent(TrafficClass::Telemetry, 100, Group, 3.0);
+    const StreamId light = AddThatWent(TrafficClass::Telemetry, 100, Group);
+    Duration now = 0ns;
+    for (int i = 0; i < 10'000; ++i)
+    {
+        now = std::max(Schedule.NextDue(now), now + 1ns);
+        while (const auto next = Schedule.Next(now))
+        {
+            Schedule.Sent(*next, 100, now);
+            const auto rider = Schedule.NextRider(TrafficClass::Telemetry, Group, 1000, now);
+            if (rider)
+            {
+                Schedule.Sent(*rider, 100, now);
+            }
+            Schedule.Ready(heavy, 100);
+            Schedule.Ready(light, 100);
+        }
+    }
+    EXPECT_NEAR(Share(heavy, light), 3.0, 0.1);
+}
+
+TEST_F(AirRiderTest, AClassDoesNotRideWithoutCredit)
+{
+    const StreamId pose = AddThatWent(TrafficClass::Telemetry, 148, Group);
+    const StreamId bulk = AddThatWent(TrafficClass::Bulk, 100, Group);
+    Schedule.Sent(pose, 148, 0ns);
+    EXPECT_EQ(Rider(1000, TrafficClass::Telemetry), bulk);
+    Schedule.Sent(bulk, 100, 0ns);
+    Schedule.Ready(bulk, 100);
+    EXPECT_FALSE(Rider(1000, TrafficClass::Telemetry));
+    EXPECT_EQ(Rider(1000, TrafficClass::Bulk), bulk) << "within its own datagram";
+    EXPECT_EQ(Rider(1000, TrafficClass::Presence), bulk) << "behind a beat";
+}
+
+TEST_F(AirRiderTest, NobodyRidesWhileALargeDatagramWaits)
+{
+    const StreamId bulk = AddThatWent(TrafficClass::Bulk, 1400, Elsewhere);
+    Schedule.SetBudget(2000, 0ns);
+    Schedule.SentPast(1000, 0ns);
+    EXPECT_FALSE(Schedule.Next(700ms)) << "the second is too full";
+    const StreamId command = AddThatWent(TrafficClass::Command, 160, Group);
+    EXPECT_EQ(Schedule.Next(700ms), command);
+    Schedule.Sent(command, 160, 700ms);
+    Schedule.Ready(command, 160);
+    EXPECT_FALSE(Schedule.NextRider(TrafficClass::Command, Group, 1000, 700ms));
+    Schedule.NotReady(bulk);
+    EXPECT_EQ(Schedule.NextRider(TrafficClass::Command, Group, 1000, 700ms), command);
+}
+
+TEST_F(AirRiderTest, ClassesAndStreamsHaveTheirSharesHoweverManyRide)
+{
+    const StreamId command = AddThatWent(TrafficClass::Command, 100, Group);
+    const StreamId bulk = AddThatWent(TrafficClass::Bulk, 100, Group);
+    const StreamId heavy = AddThatWent(TrafficClass::Bulk, 100, Group, 3.0);
+    int rode = 0;
+    for (Duration now = 0s; now < 1000s; now = std::max(Schedule.NextDue(now), now + 1ns))
+    {
+        while (const auto next = Schedule.Next(now))
+        {
+            Send(*next, now);
+            std::size_t room = 400;
+            while (const auto rider = Schedule.NextRider(Schedule.ClassOf(*next), Group, room, now))
+            {
+                Send(*rider, now);
+                room -= 52;
+                ++rode;
+            }
+        }
+    }
+    EXPECT_GT(rode, 10'000);
+    EXPECT_NEAR(Share(heavy, bulk), 3.0, 0.02);
+    EXPECT_NEAR(Share(command, bulk) / 4.0, 16.0, 0.2);
 }
 
 }  // namespace
