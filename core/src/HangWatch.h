@@ -17,7 +17,7 @@ public:
 
     HangWatch(std::size_t managers, std::chrono::nanoseconds patience);
 
-    // Called now and then for each manager that has not ended. `step` names the step that it is in; null
+    // Called now and then for each manager. `step` names the step that it is in; null
     // between two steps. `hangsFor`: it has been there for this long, which is too long; 0: it is not.
     void Look(std::size_t manager, const std::string &name, bool toldToShutDown, const char *step,
               std::chrono::nanoseconds hangsFor, Clock::time_point now);

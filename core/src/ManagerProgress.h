@@ -43,7 +43,7 @@ public:
 
     // An exception with that text has left the step.
     void Failed(Step step, const std::string &text);
-    // The last unit of work succeeded, or a new run begins.
+    // The last unit of work succeeded, the manager has ended well, or a new run begins.
     void Recovered();
 
     // Why the manager does not do its work; nothing if it does. A manager that never sleeps may block in its

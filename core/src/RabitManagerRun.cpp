@@ -271,7 +271,11 @@ void RabitManager::ShutdownStep()
     const std::chrono::nanoseconds now = _workspace.GetClock().Monotonic();
     UpdateStats(now);
     PostStatus();
-    Guard(ManagerProgress::Step::Shutdown, now, [this] { Shutdown(); });
+    // A manager that has ended well fails no more, however its last unit of work ended.
+    if (Guard(ManagerProgress::Step::Shutdown, now, [this] { Shutdown(); }) && !_startupFailed)
+    {
+        _progress->Recovered();
+    }
     _loopActive.store(false);
 }
 

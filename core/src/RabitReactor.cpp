@@ -153,7 +153,7 @@ void RabitReactor::State::AwaitEnd(ShutdownSignals &signals)
             const auto trouble =
                 manager._progress->Trouble(manager._name, *manager._wakeup, Workspace.GetClock().Monotonic());
             watch.Look(i, manager._name, manager._loopActive.load() && manager._wakeup->IsShutdownRequested(),
-                       manager._progress->StepName(),
+                       trouble ? trouble->Step.c_str() : manager._progress->StepName(),
                        trouble ? trouble->HangsFor : std::chrono::nanoseconds(0), now);
         }
     }

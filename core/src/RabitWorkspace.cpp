@@ -139,7 +139,7 @@ bool RabitWorkspace::ForwardMessage(const std::string &name, const std::shared_p
 bool RabitWorkspace::RefuseUnknown(const std::string &name, const std::shared_ptr<RabitQueueReceipt> &receipt)
 {
     _refusals->NoteUnknown(name);
-    return TellRefused(receipt, RefusalReasonOf(QueueAddResult::UnknownQueue, name));
+    return TellRefused(receipt, receipt ? RefusalReasonOf(QueueAddResult::UnknownQueue, name) : "");
 }
 
 bool RabitWorkspace::TellDelivered(const std::shared_ptr<RabitQueueReceipt> &receipt)

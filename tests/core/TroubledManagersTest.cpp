@@ -185,6 +185,19 @@ TEST(TroubledManagers, AManagerWhoseStartupThrewIsSeenUntilItRunsAgain)
     EXPECT_TRUE(fixture.Workspace.GetListOfTroubledManagers().empty());
 }
 
+TEST(TroubledManagers, AManagerThatHasEndedWellFailsNoMore)
+{
+    const CapturedLog log;
+    SteppedFixture fixture;
+    ScriptedManager &manager = fixture.Add("Manager");
+    manager.OnWork = [] { throw std::runtime_error("no fix"); };
+    fixture.Reactor.Start();
+    fixture.RunFor(2s);
+    ASSERT_EQ(fixture.Workspace.GetListOfTroubledManagers().size(), 1u);
+    fixture.Reactor.Stop();
+    EXPECT_TRUE(fixture.Workspace.GetListOfTroubledManagers().empty());
+}
+
 TEST(TroubledManagers, AManagerThatIsGoneIsNoneOfThem)
 {
     const CapturedLog log;
