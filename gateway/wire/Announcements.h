@@ -23,8 +23,9 @@ inline constexpr std::size_t LargestEncoded = 32 * 1024;
 // Messages published and queues accepted, together; types of these queues, together.
 inline constexpr std::size_t MostOffers = 512;
 inline constexpr std::size_t MostTypes = 1024;
-// Bytes of the name of a type. Those of nodes, messages and queues are in names/NamePattern.h.
-inline constexpr std::size_t LongestType = 255;
+// Bytes of the name of a type: with its definition behind it (names/TypeDefinition.h), a queue link takes
+// 255. Those of nodes, messages and queues are in names/NamePattern.h.
+inline constexpr std::size_t LongestType = 238;
 
 // The announcement of a node with that configuration. Types that this process does not know have the
 // definition 0.

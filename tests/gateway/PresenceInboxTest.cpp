@@ -282,7 +282,7 @@ TEST(Announcements, WhatOthersWouldNotTakeIsSaid)
     const std::string bytes = Announcements::WhyTooLarge(Accepting(1, 200, std::string(200, 'T')));
     EXPECT_NE(bytes.find("bytes of names; others take at most 32768"), std::string::npos) << bytes;
     EXPECT_EQ(Announcements::WhyTooLarge(Accepting(1, 1, std::string(300, 'T'))),
-              "this node would announce 300 bytes as the name of a type; others take at most 255");
+              "this node would announce 300 bytes as the name of a type; others take at most 238");
 }
 
 }  // namespace
