@@ -41,6 +41,8 @@ public:
     };
 
     SendingTurn() = default;
+    // On the thread of the turn, if there is one.
+    ~SendingTurn() { Drop(); }
     SendingTurn(const SendingTurn &) = delete;
     SendingTurn &operator=(const SendingTurn &) = delete;
 
