@@ -10,7 +10,8 @@ namespace Rabit
 namespace
 {
 
-// True if the node tells in its beats that messages of this one wait for room in a queue.
+// True if the node tells in its beats that it holds messages of this one back: a queue of it is full or not
+// there yet, or its memory for large messages is used up.
 bool HoldsBack(const PeerTable::Peer &peer, std::uint32_t ownTag)
 {
     return std::any_of(peer.Strains.begin(), peer.Strains.end(),
@@ -90,9 +91,10 @@ void FullQueues::LookHere(const std::vector<QueueInfo> &queues, const Gateway::F
         }
         if (!waiting.empty())
         {
-            problems.push_back({"queue " + info.Name, waiting.size() == 1 ? waiting.front() : "",
-                                "it is full, and its manager takes no messages from it: those of " +
-                                    ListedNames(waiting) + " wait"});
+            problems.push_back(
+                {"queue " + info.Name, waiting.size() == 1 ? waiting.front() : "",
+                 "it is full, and its manager takes no messages from it, or too few: those of " +
+                     ListedNames(waiting) + " wait"});
         }
         else if (HasRefusedLately(queue, now))
         {
@@ -113,7 +115,8 @@ void FullQueues::LookThere(const Gateway::Fleet &fleet, const PeersOverPaths &pe
         const auto known = _there.find({link.node, link.queue});
         Queue &queue = links[{link.node, link.queue}];
         queue = known != _there.end() ? known->second : Queue{0, now, 0, std::nullopt};
-        const std::uint64_t gotOn = link.delivered + link.expired + link.in_doubt + link.undeliverable;
+        // Messages that expire meanwhile do not get on.
+        const std::uint64_t gotOn = link.delivered + link.undeliverable;
         const Duration still = TakeIn(queue, gotOn, link.refused_full, now);
         if (link.outbox == 0)
         {
@@ -128,10 +131,9 @@ void FullQueues::LookThere(const Gateway::Fleet &fleet, const PeersOverPaths &pe
         {
             continue;
         }
-        const std::string why =
-            isLost   ? link.node + " is LOST"
-            : isHeld ? "a queue of " + link.node + " is full, and its manager takes no messages from it"
-                     : link.node + " has taken none for more than 10 s";
+        const std::string why = isLost   ? link.node + " is LOST"
+                                : isHeld ? "a queue of " + link.node + " is full, or not there yet"
+                                         : link.node + " has taken none for more than 10 s";
         problems.push_back(
             {"send " + link.node + "/" + link.queue, link.node,
              (refuses ? "no more messages may wait, and they are refused: " : "messages wait: ") + why});

@@ -9,13 +9,14 @@ namespace Rabit::ManagerTroubles
 namespace
 {
 
-// A unit of work that throws may succeed at the next turn. The rest does not end by itself soon.
+// A unit of work that throws may succeed at the next turn, and one that is late may be so for once, as after
+// this process stood still. The rest does not end by itself soon.
 Gateway::Problem ProblemOf(const ManagerTrouble &trouble)
 {
     Gateway::Problem problem;
     problem.subject = "manager " + trouble.Manager;
-    problem.certain = true;
     const bool isWork = trouble.Step == "ExecuteUnitOfWork";
+    problem.certain = !isWork;
     const std::string step = isWork ? "its unit of work" : "its " + trouble.Step;
     if (trouble.HangsFor > std::chrono::nanoseconds::zero())
     {
@@ -23,7 +24,6 @@ Gateway::Problem ProblemOf(const ManagerTrouble &trouble)
                          "; its wake-ups, its queue and a shutdown wait for it";
         return problem;
     }
-    problem.certain = !isWork;
     problem.reason = step + " threw: " + trouble.Failure;
     if (trouble.Step == "Startup")
     {
