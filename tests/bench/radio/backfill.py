@@ -46,21 +46,6 @@ def medium():
     return {"kbit": KBIT, "queue": 16000, "static_neighbours": True}
 
 
-def wait_until_whole(fleet, nodes, seconds):
-    """Until nothing is missing in the recording of the ground station of the posts that were there at the beginning, while the
-    nodes go on posting. Returns the figures."""
-    posts = {(node, row["message"]): row["posted"] for node in nodes for row in fleet.judge(node)}
-    begin = time.monotonic()
-    while True:
-        figures = [{**row, "node": node} for node in nodes for row in fleet.judge(node)]
-        # Posts that come meanwhile are on their way, live.
-        if all(row["oldest_missing"] >= posts[row["node"], row["message"]] for row in figures):
-            return figures
-        if time.monotonic() - begin > seconds:
-            raise AssertionError(f"after {seconds} s still missing: {figures}")
-        time.sleep(0.5)
-
-
 def fill(programs, transport, more):
     with radio_field.RadioField(programs / "radio", ["ground", *AIRCRAFT], medium()) as ground:
         fleet = bf.Fleet(ground, programs, transport, ground.folder)
@@ -72,7 +57,7 @@ def fill(programs, transport, more):
         for node in AIRCRAFT:
             station.wait_for(lambda text, node=node: text.startswith(f"age {node}"), bf.LIMIT)
         time.sleep(20)
-        wait_until_whole(fleet, AIRCRAFT, bf.LIMIT)
+        fleet.wait_until_whole_so_far(AIRCRAFT, bf.LIMIT)
         before = time.monotonic()
         time.sleep(60)
         calm = shown(station, before, time.monotonic())
@@ -85,7 +70,7 @@ def fill(programs, transport, more):
             station.wait_for(lambda text, node=node: text.startswith(f"age {node}") and float(text.split()[2]) < 2,
                              bf.LIMIT, healed)
         live = time.monotonic()
-        figures = wait_until_whole(fleet, AIRCRAFT, 600)
+        figures = fleet.wait_until_whole_so_far(AIRCRAFT, 600)
         whole = time.monotonic()
         busy = shown(station, live, whole)
         air = ground.counters()

@@ -80,3 +80,20 @@ class Fleet:
         except AssertionError as error:
             raise AssertionError(f"still missing: {figures}") from error
         return figures
+
+    def wait_until_whole_so_far(self, nodes, seconds):
+        """Until nothing is missing in the recording of the ground station of the posts that were there at the beginning, while
+        the nodes go on posting. Returns the figures. Fails after so many seconds."""
+        posts = {(node, row["message"]): row["posted"] for node in nodes for row in self.judge(node)}
+        figures = []
+
+        def is_whole():
+            figures[:] = [{**row, "node": node} for node in nodes for row in self.judge(node)]
+            # Posts that come meanwhile are on their way, live.
+            return all(row["oldest_missing"] >= posts[row["node"], row["message"]] for row in figures)
+
+        try:
+            harness.until(is_whole, seconds)
+        except AssertionError as error:
+            raise AssertionError(f"still missing: {figures}") from error
+        return figures
