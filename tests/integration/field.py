@@ -118,9 +118,6 @@ class Field:
         self.processes[node] = process
         return process
 
-    def pids(self):
-        return [process.pid for process in list(self.processes.values())]
-
     def kill(self, node):
         """kill -9, and waits for the end."""
         self.processes[node].kill()

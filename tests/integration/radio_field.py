@@ -102,9 +102,6 @@ class RadioField(field.Field):
         return sum(int(field.run_in(self.space(node), "cat", "/sys/class/net/eth0/statistics/tx_dropped"))
                    for node in self.nodes)
 
-    def pids(self):
-        return [*super().pids(), self._air.pid]
-
     def tell(self, line):
         """A command of radio/Console.h, and the answer."""
         return self._air.tell(line)

@@ -18,10 +18,10 @@ import types
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE.parent / "gate"), str(HERE.parent / "integration")]
 import flights  # noqa: E402
-import outcomes  # noqa: E402
 import field  # noqa: E402
 import harness  # noqa: E402
 import judge  # noqa: E402
+import sight  # noqa: E402
 
 FLEET = {"ground": "fastdds", "uav1": "cyclonedds", "uav2": "fastdds"}
 NEWCOMERS = {"newcomer1": "fastdds", "newcomer2": "cyclonedds"}
@@ -82,12 +82,12 @@ class Trial:
         begin = time.monotonic()
         process = self.ground.start(name, [self.options.ledger_node, "--node", name, "--ledger", path, "--transport",
                                            NEWCOMERS[name]])
-        sight = outcomes.Sight(path)
+        own = sight.Sight(path)
 
         def met():
-            for each in (sight, *self.flight.sights.values()):
+            for each in (own, *self.flight.sights.values()):
                 each.read()
-            return (all(sight.peers.get(node) == "UP" for node in FLEET) and
+            return (all(own.peers.get(node) == "UP" for node in FLEET) and
                     all(self.flight.sights[node].peers.get(name) == "UP" for node in FLEET))
         while not met() and time.monotonic() - begin < 4 * LONGEST_MEETING_S:
             time.sleep(0.02)

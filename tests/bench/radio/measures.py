@@ -182,6 +182,12 @@ def start_fleet(fleet, a_second, *more):
     return uavs
 
 
+def share_of_ticks(run, node, origin):
+    """Of the ticks from the first to the last that the node saw, those that it saw."""
+    seen = {event.number("number") for event in run.events(node, "tick") if event["from"] == origin}
+    return len(seen) / (max(seen) - min(seen) + 1) if seen else 0.0
+
+
 def fly(fleet, uavs, seconds, a_second):
     """Presence, commands and poses of a fleet that starts at once."""
     fleet.ground.reset()
@@ -194,7 +200,7 @@ def fly(fleet, uavs, seconds, a_second):
     time.sleep(2)  # what was sent last may still come
     run = fleet.ledgers()
     peers = [e for life in run.all_lives() for e in life.of("peer")]
-    shares = [run.share_of_ticks("ground", node)[0] for node in fleet.ground.nodes if node != "ground"]
+    shares = [share_of_ticks(run, "ground", node) for node in fleet.ground.nodes if node != "ground"]
     delays, missing = command_delays(run, since, until - 2)
     p99 = percentile(delays + [float("inf")] * missing, 99)
     age = percentile(shown_ages(run, since, until), 90)

@@ -30,6 +30,12 @@ def commands_that_never_come_count_as_open_and_those_of_other_times_do_not():
     assert (delays, missing) == ([0.5], 2), (delays, missing)
 
 
+def the_share_of_ticks_is_of_those_between_the_first_and_the_last_that_were_seen():
+    ground = START.format(0, "ground") + "".join(f"{k * S} tick from=uav1 number={k} age_s=0.1\n" for k in (3, 4, 6))
+    run = ledgers(ground=ground, uav1=START.format(0, "uav1"))
+    assert (measures.share_of_ticks(run, "ground", "uav1"), measures.share_of_ticks(run, "uav1", "ground")) == (0.75, 0.0)
+
+
 def percentiles_are_of_the_sorted_values():
     values = list(range(200))
     assert [figures.percentile(values, p) for p in (50, 99)] == [100, 198]
@@ -93,6 +99,7 @@ def the_table_has_a_column_for_each_figure_of_a_measure():
 def main():
     for test in (shown_age_grows_between_ticks_and_is_infinite_before_the_first,
                  commands_that_never_come_count_as_open_and_those_of_other_times_do_not,
+                 the_share_of_ticks_is_of_those_between_the_first_and_the_last_that_were_seen,
                  percentiles_are_of_the_sorted_values, traffic_is_what_was_offered_by_the_time_and_the_rate,
                  the_ground_stations_lines_are_read, a_fleet_is_up_when_each_was_up_with_a_pose,
                  a_limit_is_missed_by_a_worse_figure_and_by_none, every_row_can_be_measured,
