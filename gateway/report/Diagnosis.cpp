@@ -23,11 +23,17 @@ const Gateway::PublishedMessage *OfferOf(const std::string &message, const PeerT
     return peer.Offers ? Offers::Find(*peer.Offers, message) : nullptr;
 }
 
+// True if the rule has that name itself, not by a pattern.
+bool Names(const SubscribeRule &rule, const std::string &name)
+{
+    return std::find(rule.From.begin(), rule.From.end(), name) != rule.From.end();
+}
+
 // True if nodes may lack the message. `*` in `from` means every node that has it: once one node announces
 // it, the others need not.
 bool MayLack(const SubscribeRule &rule, const PeersOverPaths &peers)
 {
-    if (std::find(rule.From.begin(), rule.From.end(), "*") == rule.From.end())
+    if (!Names(rule, "*"))
     {
         return false;
     }
@@ -109,11 +115,9 @@ std::vector<std::string> MessagesOf(const PeerTable::Peer &peer, const std::dequ
     std::vector<std::string> messages;
     for (const SubscribeRule &rule : subscribe)
     {
-        const bool isNamed = std::find(rule.From.begin(), rule.From.end(), peer.Node) != rule.From.end();
         const bool isMeant = peer.Reason != PeerTable::Left && MatchesAny(rule.From, peer.Node);
-        const bool isFromAll = std::find(rule.From.begin(), rule.From.end(), "*") != rule.From.end();
-        const bool lacks = isFromAll && peer.Offers && OfferOf(rule.Message, peer) == nullptr;
-        if (isNamed || (isMeant && !lacks))
+        const bool lacks = Names(rule, "*") && peer.Offers && OfferOf(rule.Message, peer) == nullptr;
+        if (Names(rule, peer.Node) || (isMeant && !lacks))
         {
             messages.push_back(rule.Message);
         }
