@@ -47,9 +47,9 @@ enum class OpenFault : std::uint8_t
 constexpr std::size_t OpenFaults = static_cast<std::size_t>(OpenFault::OpenSslFailed) + 1;
 
 // Opens the datagrams that come on one path. Order: header, window, freshness, AEAD, signature. A number is
-// looked up first and marked when all was verified; nothing is remembered of a datagram that was not. Does
-// not allocate, but for claims, and what OpenSSL allocates to verify a signature. Time is passed in. Not
-// thread-safe.
+// looked up first, and marked once tag and signature are right; nothing is remembered of a datagram of which
+// they are not. Does not allocate, but for claims, and what OpenSSL allocates to verify a signature. Time is
+// passed in. Not thread-safe.
 class Opener
 {
 public:

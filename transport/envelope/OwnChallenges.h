@@ -13,8 +13,8 @@ namespace Rabit::Envelope
 {
 
 // The nonces by which this node asks others to prove that they are live. One nonce asks all nodes, since a
-// request goes to all. Replace it at most every ten seconds: an answer to a former one counts while that one
-// is younger than this. Time is passed in. Not thread-safe.
+// request goes to all. Replace it every five seconds: an answer to the former one counts while that one is
+// younger than AnswersCountFor. Time is passed in. Not thread-safe.
 class OwnChallenges
 {
 public:
