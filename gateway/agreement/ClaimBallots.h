@@ -1,0 +1,128 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "agreement/AgreementSettings.h"
+#include "agreement/ClaimMessages.h"
+#include "agreement/FenceStore.h"
+
+namespace Rabit
+{
+
+// A voter: grants each claim to one claimant at a time, and keeps it while that one renews its lease. This is
+// the lease of Gray and Cheriton (1989) with a fencing number, as in Chubby (Burrows 2006); a majority of
+// voters makes it a PaxosLease (Trencseni et al. 2012).
+//
+// - The record of a claimant's session is a *book*. It ends when no renewal has come for
+//   AgreementSettings::VotersLease, and takes all of its grants with it. Two incarnations of one name have
+//   two books, since the former one may still run.
+// - Grants live in memory. So a voter that starts abstains for as long: its former life may have granted
+//   anything. Only the highest fence is stored, in blocks, before it is used.
+// - It abstains while another live node has its name, since both would vote.
+//
+// A pure state machine. Time is passed in: that of a clock that runs on while the computer is suspended. Not
+// thread-safe.
+class ClaimBallots
+{
+public:
+    using Duration = AgreementSettings::Duration;
+
+    // Books of one name: its present incarnation, and former ones that may still run.
+    static constexpr std::size_t MostBooksOfOne = 4;
+    // Fences that are stored ahead, so that not each claim waits for a disk.
+    static constexpr std::uint64_t FencesAhead = 1024;
+    // How far a fence may be above all that this voter knows: a voter that lost its storage knows none. A
+    // member that leaps again and again needs 16 million requests to use all fences up.
+    static constexpr std::uint64_t LargestLeap = std::uint64_t{1} << 40;
+
+    // Why a request was not answered, besides abstention.
+    enum class Ignored : std::uint8_t
+    {
+        Nothing,
+        NoMember,    // the claimant is not in the list
+        OtherGroup,  // its list or its lease is another one
+        FormerLife,  // a later incarnation or session of the claimant is known
+        TooMany      // its name has too many books
+    };
+
+    // Both must outlive the object. `now`: abstains for VotersLease from here on.
+    ClaimBallots(const AgreementSettings &settings, FenceStore &store, Duration now);
+
+    // Returns the answer. Empty: this voter says nothing, and LastIgnored tells why.
+    std::optional<ClaimReply> OnRequest(std::string_view from, const ClaimRequest &request, Duration now);
+    Ignored LastIgnored() const { return _ignored; }
+
+    // Another live node has this node's name.
+    void NameIsTaken(Duration now) { _votesFrom = now + _settings.VotersLease(); }
+    // True if it does not vote now.
+    bool Abstains(Duration now) const { return now < _votesFrom; }
+
+    // The holder of a claim, as far as this voter knows: others may have granted it to another one.
+    struct Holding
+    {
+        std::string Holder;
+        std::uint64_t Fence = 0;  // 0: granted, not accepted yet
+        Duration Until{0};        // if it is not renewed
+    };
+    std::optional<Holding> HolderOf(std::string_view claim, Duration now) const;
+    // Calls visit(claim, holding) for each claim.
+    template <typename Visit>
+    void VisitAll(Duration now, const Visit &visit) const
+    {
+        for (const auto &[claim, grant] : _grants)
+        {
+            if (const auto holding = HolderOf(claim, now))
+            {
+                visit(claim, *holding);
+            }
+        }
+    }
+    std::uint64_t Fences() const { return _fences; }
+    bool CannotStore() const { return _cannotStore; }
+
+private:
+    struct Book
+    {
+        std::string Claimant;
+        std::uint64_t Incarnation = 0;
+        std::uint32_t Session = 0;
+        std::uint32_t Renewal = 0;
+        std::uint32_t Number = 0;  // of the last orders
+        std::size_t Grants = 0;
+        Duration Until{0};
+    };
+    struct Grant
+    {
+        std::uint64_t Book = 0;
+        std::uint64_t Fence = 0;
+    };
+    using Books = std::map<std::uint64_t, Book>;
+    using Grants = std::map<std::string, Grant, std::less<>>;
+
+    void EndBooks(Duration now);
+    Books::iterator BookOf(std::string_view from, const ClaimRequest &request, Duration now);
+    ClaimResult Obey(const ClaimOrder &order, Books::value_type &book, Duration now);
+    ClaimResult Ask(const ClaimOrder &order, Books::value_type &book, Duration now);
+    ClaimResult RefusedFor(const std::string &claim, const Grant *grant, Duration now) const;
+    bool Raise(std::uint64_t fence);
+
+    const AgreementSettings &_settings;
+    const std::uint64_t _group;
+    FenceStore &_store;
+    std::uint64_t _fences;
+    std::uint64_t _stored;
+    bool _cannotStore = false;
+    Duration _votesFrom;
+    std::uint64_t _lastBook = 0;
+    Books _books;
+    Grants _grants;
+    Ignored _ignored = Ignored::Nothing;
+};
+
+}  // namespace Rabit
