@@ -39,14 +39,14 @@ void AirReport::Rate::Look(std::uint64_t bytes, double seconds)
 }
 
 Gateway::AirStatus AirReport::Fill(const TransportCounters &counters, std::optional<double> capacity,
-                                   const std::deque<TopicPublisher> &publishers, std::uint64_t foreignBytes,
+                                   const std::deque<TopicPublisher> &publishers, const Sent &sent,
                                    const std::function<bool(std::string_view node)> &carries,
                                    Gateway::Fleet &fleet, Duration now)
 {
     if (_measuredAt == Duration(0) || now - _measuredAt >= ShortestTime)
     {
         const double seconds = std::chrono::duration<double>(now - _measuredAt).count();
-        Measure(counters, publishers, foreignBytes, fleet, seconds);
+        Measure(counters, publishers, sent, fleet, seconds);
         _measuredAt = now;
     }
     Gateway::AirStatus air;
@@ -105,18 +105,19 @@ std::string AirReport::TextOf(const Gateway::AirStatus &air)
 }
 
 void AirReport::Measure(const TransportCounters &counters, const std::deque<TopicPublisher> &publishers,
-                        std::uint64_t foreignBytes, const Gateway::Fleet &fleet, double seconds)
+                        const Sent &sent, const Gateway::Fleet &fleet, double seconds)
 {
     _discovery.Look(counters.DiscoveryBytes, seconds);
     _samples.Look(counters.SampleBytes, seconds);
-    _foreign.Look(foreignBytes, seconds);
+    _foreign.Look(sent.Foreign, seconds);
     _publications.resize(publishers.size());
     for (std::size_t i = 0; i < publishers.size(); ++i)
     {
         Publication &publication = _publications[i];
         const std::uint64_t written = publishers[i].Written();
         const std::size_t each = publishers[i].SampleBytes(_cost);
-        publication.Sent.Look(publication.Sent.Bytes + (written - publication.Written) * each, seconds);
+        const std::uint64_t computed = publication.Sent.Bytes + (written - publication.Written) * each;
+        publication.Sent.Look(i < sent.Publications.size() ? sent.Publications[i] : computed, seconds);
         publication.Written = written;
     }
     for (auto &[name, rate] : _links)

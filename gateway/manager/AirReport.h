@@ -21,8 +21,8 @@ namespace Rabit
 
 // Fills the part of Gateway/Fleet about the air: rates over about the last second, from rising counters. If
 // called more often, it gives the same rates again. The bytes sent are those that the transport has counted.
-// The shares of publications, links and foreign topics are computed from the sizes of their samples, and the
-// rest is presence.
+// The shares of publications, links and foreign topics are those that were counted for them, or else computed
+// from the sizes of their samples. The rest is presence.
 class AirReport
 {
 public:
@@ -31,13 +31,20 @@ public:
     // The configuration must outlive the object.
     AirReport(const GatewayConfig &config, const AirCost &cost) : _config(config), _cost(cost) {}
 
+    // Bytes on the air since the beginning.
+    struct Sent
+    {
+        std::uint64_t Foreign = 0;                     // of the foreign topics
+        std::vector<std::uint64_t> Publications = {};  // in their order; empty: not known
+    };
+
     // Of the path to the nodes that `carries` tells. Returns its part of fleet.air. Fills in the rates of the
     // links to these nodes, and adds to those of the publications, which are there already, the latter in the
     // order of the publishers. Adds a problem for each publication whose newest value takes more than a
     // second of the budget, or of the capacity. `capacity`: estimated capacity of the channel in bytes a
-    // second; empty: it does not limit this node. `foreignBytes`: of the foreign topics since the beginning.
+    // second; empty: it does not limit this node.
     Gateway::AirStatus Fill(const TransportCounters &counters, std::optional<double> capacity,
-                            const std::deque<TopicPublisher> &publishers, std::uint64_t foreignBytes,
+                            const std::deque<TopicPublisher> &publishers, const Sent &sent,
                             const std::function<bool(std::string_view node)> &carries, Gateway::Fleet &fleet,
                             Duration now);
 
@@ -61,7 +68,7 @@ private:
     };
 
     void Measure(const TransportCounters &counters, const std::deque<TopicPublisher> &publishers,
-                 std::uint64_t foreignBytes, const Gateway::Fleet &fleet, double seconds);
+                 const Sent &sent, const Gateway::Fleet &fleet, double seconds);
 
     const GatewayConfig &_config;
     const AirCost _cost;

@@ -25,6 +25,9 @@ constexpr Duration LookPeriod = std::chrono::milliseconds(20);
 // Each copy of a beat has room for a body of this size, however many copies there are: 200 bytes on the air.
 constexpr std::size_t SmallBeat = BeatFormat::WithNews + 72;
 
+// A beat may ride by this part of its period before it is promised.
+constexpr int EarlyPart = 5;
+
 // Share of a budget that the exchange of keys may take, so that beats get through meanwhile.
 constexpr double KeyShare = 0.5;
 
@@ -235,6 +238,10 @@ void AirTraffic::LookAtBeat(Duration now)
     {
         _schedule.Ready(_beat, BeatBytes(now));
     }
+    else if (_merges && now >= _presence.BeatPromised() - _presence.BeatPeriod() / EarlyPart)
+    {
+        _schedule.MayRide(_beat, BeatBytes(now));
+    }
     if (_config.Radio.Budget)
     {
         _schedule.Promise(_beat, BeatBytes(now), _presence.BeatPromised());
@@ -315,6 +322,7 @@ Duration AirTraffic::ServeLimited()
 {
     const Duration linksDue = _links.Advance();
     const Duration now = Now();
+    _merges = IsMerging(now);
     LookAtBeat(now);
     _mirrored = _choice.CarriesAny(_path)           ? Mirrored::All
                 : _choice.IsSecondOfAny(_path, now) ? Mirrored::Copies
@@ -329,7 +337,7 @@ Duration AirTraffic::ServeLimited()
     _foreign.Look(now);
     while (const auto chosen = _schedule.Next(now))
     {
-        Send(*chosen, now);
+        SendTurn(*chosen, now);
     }
     Duration next = std::min(_schedule.NextDue(now), linksDue > now ? linksDue : now + LookPeriod);
     next = _mirrored == Mirrored::Copies ? std::min(next, now + LookPeriod) : next;
@@ -350,15 +358,17 @@ Duration AirTraffic::ServeLimited()
     return next;
 }
 
-void AirTraffic::Send(StreamId id, Duration now)
+std::size_t AirTraffic::Send(StreamId id, std::optional<std::size_t> joins, Duration now)
 {
-    const std::size_t most = _schedule.Budget().LargestDatagram();
+    const std::size_t largest = _schedule.Budget().LargestDatagram();
+    const std::size_t most = joins ? std::min(largest, *joins + AirSchedule::JoinedHeaders) : largest;
     std::size_t publisher = _publishers.size();
     bool sent = true;
     bool isForeign = false;
     if (id == _beat)
     {
-        SendBeat(_cost.BodyWithin(BeatRoom(now), false), now);
+        const std::size_t room = BeatRoom(now);
+        SendBeat(_cost.BodyWithin(joins ? std::min(most, room) : room, false), now);
     }
     else if (id == _typeTexts)
     {
@@ -391,7 +401,8 @@ void AirTraffic::Send(StreamId id, Duration now)
     }
     else if (id == _beat)
     {
-        _beats.BeatTook(bytes);
+        // The period follows the bytes of a beat that goes alone, so that the others may use what is saved.
+        _beats.BeatTook(bytes + (joins ? _presence.BeatCopies() * AirSchedule::JoinedHeaders : 0));
         LookAtBeat(now);
     }
     else if (id == _typeTexts)
@@ -408,8 +419,9 @@ void AirTraffic::Send(StreamId id, Duration now)
     }
     else if (sent)
     {
-        _linkStreams.Look(most, now);
+        _linkStreams.Look(largest, now);
     }
+    return bytes;
 }
 
 Gateway::AirStatus AirTraffic::Report(Gateway::Fleet &fleet, Duration now)
@@ -424,7 +436,7 @@ Gateway::AirStatus AirTraffic::Report(Gateway::Fleet &fleet, Duration now)
                 status->delivery_rate = path.DeliveryRate;
             }
         });
-    return _report.Fill(_session->Counters(), _estimate.Rate(now), _publishers, _foreign.SentBytes(), carries,
+    return _report.Fill(_session->Counters(), _estimate.Rate(now), _publishers, SentByStreams(), carries,
                         fleet, now);
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "air/AirCost.h"
@@ -41,6 +42,8 @@ namespace Rabit
 // - Each datagram is paid for with the bytes that the transport counted for it. DDS's own traffic is paid
 //   for, too, and a part of a budget is kept free for it when it is due.
 // - With a budget the exchange of keys may take half of it (DiscoveryTurns::SetKeyRate).
+// - With a budget, streams that are ready ride in the datagram of the chosen one (AirSchedule::NextRider), as
+//   far as the session merges datagrams (TransportSession::BeginTurn).
 // - Where the estimate is the only limit, a due beat does not wait.
 // - BeatRate tells how often beats are sent.
 //
@@ -107,7 +110,15 @@ private:
     bool MayCopy(const TopicPublisher &publisher, Duration now);
     void LookAtTypes(Duration now);
     void LookAtCards();
-    void Send(StreamId id, Duration now);
+    // Sends one datagram of the stream, and pays for it. Returns its bytes on the air. `joins`: the bytes
+    // that the datagram of this turn has room for; empty: it is the first one.
+    std::size_t Send(StreamId id, std::optional<std::size_t> joins, Duration now);
+    // AirTrafficTurns.cpp
+    bool IsMerging(Duration now) const;
+    void SendTurn(StreamId id, Duration now);
+    void SendRiders(TrafficClass first, const AirSchedule::Destinations &to, std::size_t room, Duration now);
+    AirSchedule::Destinations TakeDestinations(StreamId id);
+    AirReport::Sent SentByStreams() const;
     Duration Now() const { return _clock.Monotonic(); }
 
     const GatewayConfig &_config;
@@ -126,6 +137,7 @@ private:
         All
     };
     Mirrored _mirrored = Mirrored::Nothing;
+    bool _merges = false;  // datagrams
     const AirCost _cost;
     TransportSession *_session = nullptr;
     DiscoveryTurns *_turns = nullptr;  // of the session
