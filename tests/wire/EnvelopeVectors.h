@@ -76,8 +76,7 @@ inline EnvelopeVectors MakeEnvelopeVectors()
     addNode("b_", b, 2);
     vectors["claim"] = a.Claims({b.NonceOf()});
     vectors["group"] = a.ToAll(vectors["message"]);
-    vectors["signed"] = a.Signed(vectors["message"], b, OuterClass::Meeting);
-    vectors["pairwise"] = a.Pairwise(vectors["message"], b);
+    vectors["pairwise"] = a.Pairwise(vectors["message"], b, OuterClass::Meeting);
     vectors["group_of_second_header"] = a.ToAll(vectors["message_of_second_header"], OuterClass::Bulletin);
     vectors["bulletin"] = Bulletin::Write(2, {9, 3},
                                           {{.Number = 1, .Agreement = a.Me.Agreement.Public()},
@@ -99,7 +98,6 @@ inline std::string WrongAtB(const EnvelopeVectors &vectors)
     }
     const std::vector<std::pair<std::string, std::string>> all = {
         {"group", "message"},
-        {"signed", "message"},
         {"pairwise", "message"},
         {"group_of_second_header", "message_of_second_header"}};
     for (const auto &[name, message] : all)

@@ -17,7 +17,7 @@ from cryptography.hazmat.primitives.ciphers.aead import ChaCha20Poly1305
 from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 from cryptography.hazmat.primitives.serialization import Encoding, PublicFormat
 
-GROUP, SIGNED, PAIRWISE, CLAIM = range(4)
+GROUP, PAIRWISE, CLAIM = 0, 2, 3
 TRAFFIC, MEETING, BULLETIN = range(3)
 NO_SESSION, NO_HEADER = bytes(16), bytes(20)
 
@@ -59,7 +59,7 @@ def key_of(kind, secret, epoch, sender, receiver, private):
 
 
 def context_of(outer, number, sender, kind, receiver):
-    to = receiver.session if kind in (SIGNED, PAIRWISE) else NO_SESSION
+    to = receiver.session if kind == PAIRWISE else NO_SESSION
     left = NO_HEADER if kind == CLAIM else sender.headers[outer[0] & 3]
     return b"Rabit envelope 1" + outer + struct.pack("<I", number >> 32) + sender.session + sender.hash + to + left
 
@@ -105,7 +105,7 @@ def secret_of_bulletin(bulletin, authority, serial, private):
     entries = bulletin[39 + 4 * revoked:-64]
     entry = next(entries[52 * i:52 * i + 52] for i in range(nodes) if entries[52 * i:52 * i + 4] == serial)
     shared = private.exchange(X25519PublicKey.from_public_bytes(once))
-    key = hkdf(once + public(private), shared, b"Rabit bulletin 1" + epoch)
+    key = hkdf(once + public(private), shared, b"Rabit bulletin 1" + epoch + serial)
     return ChaCha20Poly1305(key).decrypt(bytes(12), entry[4:], epoch + serial)
 
 
@@ -119,8 +119,7 @@ def main():
     assert a.is_certified(authority) and b.is_certified(authority)
     plain = open_datagram(vectors["claim"], 0, secret, a, b, private)
     assert plain == plain[:3] + plain[3:11] + claim_of(a, [vectors["b_nonce"]])[11:]
-    pairs = [("group", "message"), ("signed", "message"), ("pairwise", "message"),
-             ("group_of_second_header", "message_of_second_header")]
+    pairs = [("group", "message"), ("pairwise", "message"), ("group_of_second_header", "message_of_second_header")]
     for name, message in pairs:
         assert open_datagram(vectors[name], 5, secret, a, b, private) == vectors[message], name
     assert secret_of_bulletin(vectors["bulletin"], authority, bytes([2, 0, 0, 0]), private) == vectors["next_secret"]
@@ -132,10 +131,10 @@ def main():
         def sealed(plain, kind, contents, header, number):
             return seal_datagram(plain, kind, contents, header, (7 << 32) - 2 + number, epoch, secret, a, b, signing, own)
         vectors["claim"] = sealed(claim_of(a, [vectors["b_nonce"]]), CLAIM, MEETING, 0, 0)
-        for number, (name, kind, contents, header) in enumerate((("group", GROUP, TRAFFIC, 0), ("signed", SIGNED, TRAFFIC, 0),
+        for number, (name, kind, contents, header) in enumerate((("group", GROUP, TRAFFIC, 0),
                                                                  ("pairwise", PAIRWISE, MEETING, 0)), start=1):
             vectors[name] = sealed(vectors["message"][20:], kind, contents, header, number)
-        vectors["group_of_second_header"] = sealed(vectors["message_of_second_header"][20:], GROUP, BULLETIN, 1, 4)
+        vectors["group_of_second_header"] = sealed(vectors["message_of_second_header"][20:], GROUP, BULLETIN, 1, 3)
         pathlib.Path(sys.argv[2]).write_text("".join(f"{name} {content.hex()}\n" for name, content in vectors.items()))
 
 

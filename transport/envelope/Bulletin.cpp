@@ -30,13 +30,14 @@ std::vector<std::uint8_t> LabelledBulletin(std::span<const std::uint8_t> content
 }
 
 std::optional<SecretKey> KeyForNode(Epoch epoch, const SecretKey &shared, const PublicKey &once,
-                                    const PublicKey &node)
+                                    const BulletinNode &node)
 {
     std::array<std::uint8_t, 2 * sizeof(PublicKey)> salt{};
     std::copy(once.begin(), once.end(), salt.begin());
-    std::copy(node.begin(), node.end(), salt.begin() + sizeof(PublicKey));
+    std::copy(node.Agreement.begin(), node.Agreement.end(), salt.begin() + sizeof(PublicKey));
     std::vector<std::uint8_t> info(BulletinLabel.begin(), BulletinLabel.end());
     LittleEndian::Put(epoch, info);
+    LittleEndian::Put(node.Number, info);
     return Hkdf(salt, shared.Bytes(), info);
 }
 
@@ -133,7 +134,7 @@ std::vector<std::uint8_t> Bulletin::Write(Envelope::Epoch epoch, std::vector<Ser
     for (const BulletinNode &node : nodes)
     {
         const auto shared = once.SharedWith(node.Agreement);
-        const auto key = shared ? KeyForNode(epoch, *shared, once.Public(), node.Agreement) : std::nullopt;
+        const auto key = shared ? KeyForNode(epoch, *shared, once.Public(), node) : std::nullopt;
         std::array<std::uint8_t, SealedSecretSize> sealed{};
         if (!key || !aead.Seal(*key, 0, AuthenticatedWithSecret(epoch, node.Number), secret.Bytes(), sealed))
         {
@@ -170,7 +171,8 @@ std::optional<SecretKey> Bulletin::Secret(Serial number, const AgreementKey &key
             continue;
         }
         const auto shared = key.SharedWith(_once);
-        const auto opening = shared ? KeyForNode(_epoch, *shared, _once, key.Public()) : std::nullopt;
+        const auto opening =
+            shared ? KeyForNode(_epoch, *shared, _once, {number, key.Public()}) : std::nullopt;
         SecretKey secret;
         const bool good =
             opening && Aead().Open(*opening, 0, AuthenticatedWithSecret(_epoch, number),

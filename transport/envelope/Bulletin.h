@@ -12,8 +12,8 @@
 //   ...     64    Ed25519 signature of the authority over "Rabit bulletin 1" and all before
 //
 // A secret is sealed by ChaCha20-Poly1305 with the nonce 0 and, authenticated, epoch and serial. Its key is
-// HKDF(salt: both public keys, the bulletin's first; the X25519 secret of both; "Rabit bulletin 1" and
-// epoch).
+// HKDF(salt: both public keys, the bulletin's first; the X25519 secret of both; "Rabit bulletin 1", epoch,
+// serial). So two certificates with one X25519 key have two keys here.
 #pragma once
 
 #include <cstddef>

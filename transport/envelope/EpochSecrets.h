@@ -13,7 +13,8 @@ namespace Rabit::Envelope
 // The secrets of the newest epochs, and who is revoked. A node sends in the newest epoch. It takes datagrams
 // of former epochs for ten minutes after it learned of a newer one, so that a bulletin may reach all nodes.
 // Afterwards it takes bulletins alone, from nodes that have not got the newest one. Time is passed in. Not
-// thread-safe.
+// thread-safe: sealing and opening read it, each under its own lock. `Learn` needs both locks, that of
+// opening first.
 class EpochSecrets
 {
 public:

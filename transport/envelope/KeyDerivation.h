@@ -1,6 +1,7 @@
 // Keys and names that both sides of a datagram derive: HKDF (RFC 5869) and SHA-256. README.md has the bytes.
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -16,7 +17,7 @@ struct End
 {
     SessionId Session{};
     Hash Certificate{};
-    bool operator==(const End &) const = default;
+    auto operator<=>(const End &) const = default;
 };
 
 // Zeros if OpenSSL fails, which no content hashes to.

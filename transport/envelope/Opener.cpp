@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "common/RtpsReader.h"
+#include "guard/RtpsMessage.h"
 
 namespace Rabit::Envelope
 {
@@ -18,21 +18,27 @@ OpenFault FaultOf(ReplayWindow::Verdict verdict)
                                                     : OpenFault::TooOld;
 }
 
-// True if each INFO_SRC names a participant that the session binds. One that is cut off names none.
-bool SpeaksForItself(std::span<const std::uint8_t> message, const Session &session)
+// True if each INFO_SRC names a participant that the session binds. Walks as the guard does: a message of
+// which two parsers could disagree where its submessages begin is refused.
+bool SpeaksForItself(std::span<std::uint8_t> message, const Session &session)
 {
-    bool good = true;
-    Rtps::VisitSubmessages(message,
-                           [&](const Rtps::ConstSubmessage &part)
-                           {
-                               if (part.Kind == Rtps::SubmessageKind::InfoSource)
-                               {
-                                   const auto body = part.Body();
-                                   good = good && session.Binds(Rtps::PrefixOf(
-                                                      body.subspan(std::min(Rtps::PrefixAt, body.size()))));
-                               }
-                           });
-    return good;
+    RtpsHeader source{};
+    std::copy_n(message.begin(), source.size(), source.begin());
+    auto rest = message.subspan(source.size());
+    while (!rest.empty())
+    {
+        const auto part = Rtps::TakeSubmessage(rest);
+        if (!part)
+        {
+            return false;
+        }
+        if (part->Kind == Rtps::SubmessageKind::InfoSource &&
+            !(Rtps::PutSource(*part, source) && session.Binds(Rtps::SenderOf(source))))
+        {
+            return false;
+        }
+    }
+    return true;
 }
 
 }  // namespace
@@ -104,7 +110,7 @@ Opener::Result Opener::OpenOfSession(std::span<const std::uint8_t> datagram, con
         return refused(fault);
     }
     const bool isFresh = session.IsFresh(now);
-    if (!isFresh && outer.Class == OuterClass::Traffic)
+    if (!isFresh && outer.Class != OuterClass::Bulletin)
     {
         return refused(OpenFault::NotFresh);
     }
@@ -126,13 +132,11 @@ Opener::Result Opener::OpenOfSession(std::span<const std::uint8_t> datagram, con
     std::size_t size = *opened;
     if (outer.IsSigned())
     {
-        if (!isFresh && !_strangers.Take(now))
+        const OpenFault fault = isFresh ? CheckOfFresh(size, session, outer.Epoch, now)
+                                        : CheckOfOther(size, session.Certificate().Key, _strangers, now);
+        if (fault != OpenFault::None)
         {
-            return refused(OpenFault::OverBudget);
-        }
-        if (!HasGoodSignature(size, session.Certificate().Key))
-        {
-            return refused(OpenFault::BadSignature);
+            return refused(fault);
         }
         size -= sizeof(Signature);
     }
@@ -164,9 +168,21 @@ Opener::Result Opener::OpenClaim(std::span<const std::uint8_t> datagram, const O
     {
         return {.Fault = OpenFault::Malformed};
     }
+    else if (_sessions.WasTaken(sender, number))
+    {
+        return {.Fault = OpenFault::TooOld};
+    }
     const auto refused = [known](OpenFault fault) { return Result{.Fault = fault, .Sender = known}; };
-    const std::optional<SecretKey> key = GroupKey(*_epochs.Secret(outer.Epoch), outer.Epoch, sender);
-    if (!key)
+    if (known == nullptr && !_introductions.Take(now))
+    {
+        return refused(OpenFault::OverBudget);
+    }
+    const SecretKey &secret = *_epochs.Secret(outer.Epoch);
+    const auto derived = known == nullptr ? GroupKey(secret, outer.Epoch, sender) : std::nullopt;
+    const SecretKey *const key = known != nullptr ? known->GroupKeyOf(outer.Epoch, secret)
+                                 : derived        ? &*derived
+                                                  : nullptr;
+    if (key == nullptr)
     {
         return refused(OpenFault::OpenSslFailed);
     }
@@ -181,7 +197,14 @@ Opener::Result Opener::OpenClaim(std::span<const std::uint8_t> datagram, const O
         return refused(OpenFault::BadClaim);
     }
     const std::optional<TimePoint> liveAt = _challenges.AnsweredBy(claim->Answers, now);
-    SignatureBudget &budget = liveAt ? _answers : _strangers;
+    ProcessorBudget &budget = liveAt ? _answers : _strangers;
+    // The answer of this node has its nonce, and claims that answer that one have a budget of their own.
+    const auto asksAlone = [&](OpenFault fault)
+    {
+        Result result = refused(fault);
+        result.Challenge = claim->Challenge;
+        return result;
+    };
 
     std::shared_ptr<KnownCertificate> certificate =
         known != nullptr ? known->CertificateOwner() : _sessions.CertificateOf(sender.Certificate);
@@ -206,19 +229,17 @@ Opener::Result Opener::OpenClaim(std::span<const std::uint8_t> datagram, const O
         return refused(OpenFault::Revoked);
     }
     const bool wasFresh = known != nullptr && known->IsFresh(now);
-    if (!wasFresh && !budget.Take(now))
+    const OpenFault fault = wasFresh ? CheckOfFresh(*size, *known, outer.Epoch, now)
+                                     : CheckOfOther(*size, certificate->Key, budget, now);
+    if (fault != OpenFault::None)
     {
-        return refused(OpenFault::OverBudget);
-    }
-    if (!HasGoodSignature(*size, certificate->Key))
-    {
-        return refused(OpenFault::BadSignature);
+        return fault == OpenFault::OverBudget ? asksAlone(fault) : refused(fault);
     }
     if (isNew)
     {
         if (!budget.Take(now))
         {
-            return refused(OpenFault::OverBudget);
+            return asksAlone(OpenFault::OverBudget);
         }
         if (!IsCertifiedBy(claim->Certificate, _authority))
         {
@@ -261,9 +282,9 @@ std::optional<std::size_t> Opener::Decrypt(std::span<const std::uint8_t> datagra
                                            std::uint64_t number, const End &sender, const RtpsHeader &left,
                                            const SecretKey &key)
 {
-    const bool isForOne = outer.Kind == OuterKind::Signed || outer.Kind == OuterKind::Pairwise;
+    const SessionId &receiver = outer.Kind == OuterKind::Pairwise ? _self.Own.Session : AllSessions;
     const auto context = std::span(_work).first(OuterContextSize);
-    WriteOuterContext(datagram, number, sender, isForOne ? _self.Own.Session : AllSessions, left, context);
+    WriteOuterContext(datagram, number, sender, receiver, left, context);
     const auto sealed = datagram.subspan(OuterSize + (outer.Kind == OuterKind::Claim ? IntroductionSize : 0));
     const std::size_t size = sealed.size() - TagSize;
     const bool good =
@@ -275,6 +296,34 @@ bool Opener::HasGoodSignature(std::size_t size, VerifyingKey &key)
 {
     const auto plain = std::span(_work).first(OuterContextSize + size);
     return key.Verify(plain.first(plain.size() - sizeof(Signature)), plain.last(sizeof(Signature)));
+}
+
+// All members have the key of a session's group mode, so each can cause this work in any session's name. The
+// session in whose name it was caused pays for it, by datagrams that are not opened while the flood lasts.
+OpenFault Opener::CheckOfFresh(std::size_t size, Session &session, Epoch epoch, TimePoint now)
+{
+    const bool isNewest = epoch == _epochs.Newest();
+    ProcessorBudget &forgeries = isNewest ? _forgeries : _formerForgeries;
+    if (session.IsSuspect(isNewest, now) && !forgeries.HasLeft(now))
+    {
+        return OpenFault::OverBudget;
+    }
+    if (HasGoodSignature(size, session.Certificate().Key))
+    {
+        return OpenFault::None;
+    }
+    forgeries.Take(now);
+    session.Forge(isNewest, now);
+    return OpenFault::BadSignature;
+}
+
+OpenFault Opener::CheckOfOther(std::size_t size, VerifyingKey &key, ProcessorBudget &budget, TimePoint now)
+{
+    if (!budget.Take(now))
+    {
+        return OpenFault::OverBudget;
+    }
+    return HasGoodSignature(size, key) ? OpenFault::None : OpenFault::BadSignature;
 }
 
 const SecretKey *Opener::KeyOf(const Outer &outer, Session &session)

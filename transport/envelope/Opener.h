@@ -13,9 +13,9 @@
 #include "envelope/EpochSecrets.h"
 #include "envelope/Outer.h"
 #include "envelope/OwnChallenges.h"
+#include "envelope/ProcessorBudget.h"
 #include "envelope/Self.h"
 #include "envelope/SessionTable.h"
-#include "envelope/SignatureBudget.h"
 
 namespace Rabit::Envelope
 {
@@ -31,16 +31,17 @@ enum class OpenFault : std::uint8_t
     UnknownSession,      // no claim was heard
     Revoked,             // the sender's certificate
     Replayed,            // the number was taken
-    TooOld,              // the number is below the window
-    NotFresh,            // traffic of a session that has to prove first that it is live
+    TooOld,              // the number is below the window, or not above those of a displaced session
+    NotFresh,            // of a session that has to prove first that it is live: no bulletin
     UnknownHeader,       // the session has no such RTPS header
     NotAuthentic,        // the tag: another key, receiver or content
     BadClaim,            // a claim's plaintext
     UnknownCertificate,  // the claim only names it, and no session has it. Ask for it
-    OverBudget,          // signatures of unproven senders have used up their processor time
+    OverBudget,          // its kind of sender has used up its processor time. Of a claim also before the tag
     BadSignature,        // of the datagram: another member made it
     BadCertificate,      // not signed by the authority
-    ForeignSource,       // INFO_SRC names a sender whom the session does not bind
+    ForeignSource,       // INFO_SRC names a sender that the session does not bind, or the message has
+                         // submessages that two parsers could divide differently
     RefusedClaim,        // ClaimVerdict tells why
     OpenSslFailed
 };
@@ -49,7 +50,8 @@ constexpr std::size_t OpenFaults = static_cast<std::size_t>(OpenFault::OpenSslFa
 // Opens the datagrams that come on one path. Order: header, window, freshness, AEAD, signature. A number is
 // looked up first, and marked once tag and signature are right; nothing is remembered of a datagram of which
 // they are not. Does not allocate, but for claims, and what OpenSSL allocates to verify a signature. Time is
-// passed in. Not thread-safe.
+// passed in. Not thread-safe: the lock of opening guards it, with its `SessionTable` and `OwnChallenges`. It
+// touches nothing that `Sealer` changes.
 class Opener
 {
 public:
@@ -57,6 +59,11 @@ public:
     // that answer this node's nonce have a half of their own: no recording can use it up.
     static constexpr std::chrono::milliseconds StrangersShare{10};
     static constexpr std::chrono::milliseconds AnswersShare{10};
+    // For the keys of claims by which unknown sessions introduce themselves: anybody can send these.
+    static constexpr std::chrono::milliseconds IntroductionsShare{20};
+    // For bad signatures in the names of fresh sessions, once for the newest epoch and once for former ones.
+    // Good ones cost nothing.
+    static constexpr std::chrono::milliseconds ForgeriesShare{10};
 
     struct Result
     {
@@ -70,7 +77,9 @@ public:
         Session *Sender = nullptr;
         // Of a claim that was verified, refused or not.
         std::optional<ClaimVerdict> Verdict{};
-        Nonce Challenge{};       // of a claim; zero: none. Answer it
+        // Of a claim whose tag is right; zero: none. Answer it (OwnAnswers). After OverBudget nothing else is
+        // known of its sender.
+        Nonce Challenge{};
         Hash Wanted{};           // with UnknownCertificate: the hash of that certificate
         std::string Claimant{};  // with RefusedClaim: the names in both certificates
         std::string Holder{};
@@ -96,6 +105,9 @@ private:
                                        std::uint64_t number, const End &sender, const RtpsHeader &left,
                                        const SecretKey &key);
     bool HasGoodSignature(std::size_t size, VerifyingKey &key);
+    // Verify the signature of what Decrypt left: None, OverBudget or BadSignature.
+    OpenFault CheckOfFresh(std::size_t size, Session &session, Epoch epoch, TimePoint now);
+    OpenFault CheckOfOther(std::size_t size, VerifyingKey &key, ProcessorBudget &budget, TimePoint now);
     const SecretKey *KeyOf(const Outer &outer, Session &session);
 
     const Self &_self;
@@ -105,8 +117,11 @@ private:
     SessionTable &_sessions;
     SessionTag _ownTag;
     Aead _aead;
-    SignatureBudget _strangers{StrangersShare};
-    SignatureBudget _answers{AnswersShare};
+    ProcessorBudget _strangers{StrangersShare, ProcessorBudget::Signature};
+    ProcessorBudget _answers{AnswersShare, ProcessorBudget::Signature};
+    ProcessorBudget _introductions{IntroductionsShare, ProcessorBudget::Derivation};
+    ProcessorBudget _forgeries{ForgeriesShare, ProcessorBudget::Signature};
+    ProcessorBudget _formerForgeries{ForgeriesShare, ProcessorBudget::Signature};
     std::vector<std::uint8_t> _work;
     std::array<std::uint64_t, OpenFaults> _counts{};
 };

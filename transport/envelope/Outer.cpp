@@ -15,6 +15,7 @@ namespace
 constexpr std::uint8_t SealedMark = 0x80;  // bits 7-6 are 10
 constexpr std::uint8_t MarkBits = 0xc0;
 constexpr std::uint8_t TwoBits = 0x03;
+constexpr OuterKind ReservedKind{1};
 constexpr std::size_t EpochAt = 1;
 constexpr std::size_t TagAt = 3;
 constexpr std::size_t NumberAt = 7;
@@ -68,6 +69,10 @@ OuterFault ReadOuter(std::span<const std::uint8_t> datagram, Outer &outer)
     outer.Kind = OuterKind{BitsAt(datagram[0], 4)};
     outer.Class = OuterClass{BitsAt(datagram[0], 2)};
     outer.Header = BitsAt(datagram[0], 0);
+    if (outer.Kind == ReservedKind)
+    {
+        return OuterFault::UnknownKind;
+    }
     if (datagram.size() < OuterOverhead(outer.Kind))
     {
         return OuterFault::TooShort;

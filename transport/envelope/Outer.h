@@ -23,8 +23,8 @@ namespace Rabit::Envelope
 
 enum class OuterKind : std::uint8_t
 {
-    Group = 0,     // signed, for all
-    Signed = 1,    // signed, for one session, which the context names
+    Group = 0,  // signed, for all
+    // 1 is reserved: a signed datagram that only names its receiver could be repeated to another one
     Pairwise = 2,  // for one session, not signed: the key belongs to these two
     Claim = 3      // signed, for all; introduces its session (Claim.h)
 };
@@ -32,8 +32,10 @@ enum class OuterKind : std::uint8_t
 enum class OuterClass : std::uint8_t
 {
     Traffic = 0,  // taken only from a session that has shown that it is live
-    Meeting = 1,  // what nodes need to meet: claims, cards. Must reach no parser of a vendor
-    Bulletin = 2  // parts of a bulletin and requests for them; opened in former epochs, too. Likewise
+    Meeting = 1,  // claims, and cards: these are taken as traffic is. Must reach no parser of a vendor
+    // Parts of a bulletin and requests for them: taken from any session that has claimed, in former epochs,
+    // too. Must reach no parser of a vendor
+    Bulletin = 2
 };
 
 constexpr std::size_t OuterSize = 11;
@@ -62,6 +64,7 @@ enum class OuterFault : std::uint8_t
     TooShort,      // for its kind
     TooLong,       // LargestDatagram
     NotSealed,     // other bits 7-6: a plain datagram, or another format
+    UnknownKind,   // 1
     UnknownClass,  // 3
     WrongClass,    // a claim of another class than Meeting, or with a header that it cannot have yet
     NoEpoch        // 0

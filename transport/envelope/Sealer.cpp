@@ -26,11 +26,10 @@ bool LooksLikeStatistics(std::span<const std::uint8_t> datagram)
                Rtps::SubmessageKind::Statistics;
 }
 
-Sealer::Sealer(Self &self, const EpochSecrets &epochs, std::uint64_t next)
+Sealer::Sealer(Self &self, const EpochSecrets &epochs)
     : _self(self),
       _epochs(epochs),
       _tag(TagOf(self.Own)),
-      _next(next),
       _work(OuterContextSize + LargestDatagram + PadRoom + sizeof(Signature))
 {
 }
@@ -39,45 +38,32 @@ Sealer::Result Sealer::SealGroup(std::span<const std::uint8_t> message, OuterCla
                                  std::span<std::uint8_t> out, std::optional<Epoch> epoch)
 {
     const Epoch in = epoch.value_or(_epochs.Newest());
-    if (in == 0 || (in != _epochs.Newest() && contents != OuterClass::Bulletin))
+    if (!MaySealIn(in, contents))
     {
         return {.Fault = SealFault::NoEpoch};
     }
     return SealMessage(message, {.Kind = OuterKind::Group, .Contents = contents, .Epoch = in}, out);
 }
 
-Sealer::Result Sealer::SealSigned(std::span<const std::uint8_t> message, OuterClass contents,
-                                  const Session &to, std::span<std::uint8_t> out)
+Sealer::Result Sealer::SealPairwise(std::span<const std::uint8_t> message, OuterClass contents,
+                                    const Receiver &to, std::span<std::uint8_t> out)
 {
-    return SealMessage(message,
-                       {.Kind = OuterKind::Signed,
-                        .Contents = contents,
-                        .Epoch = _epochs.Newest(),
-                        .Receiver = to.Sender().Session},
-                       out);
-}
-
-Sealer::Result Sealer::SealPairwise(std::span<const std::uint8_t> message, OuterClass contents, Session &to,
-                                    std::span<std::uint8_t> out)
-{
-    const Epoch epoch = _epochs.Newest();
-    const SecretKey *const secret = _epochs.Secret(epoch);
-    if (secret == nullptr)
+    if (!MaySealIn(to.Epoch, contents))
     {
         return {.Fault = SealFault::NoEpoch};
-    }
-    const SecretKey *const key = to.KeyTo(epoch, *secret, _self.Agreement, _self.Own);
-    if (key == nullptr)
-    {
-        return {.Fault = SealFault::OpenSslFailed};
     }
     return SealMessage(message,
                        {.Kind = OuterKind::Pairwise,
                         .Contents = contents,
-                        .Epoch = epoch,
-                        .Receiver = to.Sender().Session,
-                        .Key = key},
+                        .Epoch = to.Epoch,
+                        .Receiver = to.Of.Session,
+                        .Key = &to.Key},
                        out);
+}
+
+bool Sealer::MaySealIn(Epoch epoch, OuterClass contents) const
+{
+    return epoch != 0 && (epoch == _epochs.Newest() || contents == OuterClass::Bulletin);
 }
 
 Sealer::Result Sealer::SealClaim(const Nonce &challenge, std::span<const Nonce> answers, bool withCertificate,
@@ -137,11 +123,11 @@ Sealer::Result Sealer::SealTries(const Request &request, std::size_t size, std::
             return {.Fault = SealFault::NoRoom};
         }
         // The last number is left out, so that the next one is never below it.
-        if (_next == std::numeric_limits<std::uint64_t>::max())
+        if (_self.Next == std::numeric_limits<std::uint64_t>::max())
         {
             return {.Fault = SealFault::NumbersEnded};
         }
-        const std::uint64_t number = _next++;
+        const std::uint64_t number = _self.Next++;
         const auto datagram = out.first(size + overhead);
         if (const SealFault fault = SealOnce(sealed, number, size, datagram); fault != SealFault::None)
         {

@@ -10,8 +10,8 @@
 #include "envelope/Claim.h"
 #include "envelope/EpochSecrets.h"
 #include "envelope/Outer.h"
+#include "envelope/Receiver.h"
 #include "envelope/Self.h"
-#include "envelope/Session.h"
 
 namespace Rabit::Envelope
 {
@@ -30,7 +30,7 @@ enum class SealFault : std::uint8_t
 
 // Seals the datagrams of one session. A datagram is a whole RTPS message, without statistics of Fast DDS
 // (SizeWithoutStatistics). Does not allocate, but for what OpenSSL allocates in a signature. Not thread-safe:
-// where several threads send, guard it by a lock of its own.
+// the lock of sealing guards it (Self.h). It touches nothing that `Opener` or `SessionTable` change.
 class Sealer
 {
 public:
@@ -49,18 +49,16 @@ public:
         std::size_t Size = 0;  // of the sealed datagram, if there is no fault
     };
 
-    // Both must outlive the sealer. `next`: for tests; a session begins with 0.
-    Sealer(Self &self, const EpochSecrets &epochs, std::uint64_t next = 0);
+    // Both must outlive the sealer.
+    Sealer(Self &self, const EpochSecrets &epochs);
 
     // Group mode, for all. `epoch`: in which epoch a bulletin is sent to a node that has not got a newer one;
     // else the newest.
     Result SealGroup(std::span<const std::uint8_t> message, OuterClass contents, std::span<std::uint8_t> out,
                      std::optional<Epoch> epoch = std::nullopt);
-    // Signed, for one session alone.
-    Result SealSigned(std::span<const std::uint8_t> message, OuterClass contents, const Session &to,
-                      std::span<std::uint8_t> out);
-    // Pairwise mode, for one session alone, which should be proven.
-    Result SealPairwise(std::span<const std::uint8_t> message, OuterClass contents, Session &to,
+    // Pairwise mode, for one session alone, which should be proven. In the epoch of `to`: the newest, or that
+    // of a node to which a bulletin is sent.
+    Result SealPairwise(std::span<const std::uint8_t> message, OuterClass contents, const Receiver &to,
                         std::span<std::uint8_t> out);
     // A claim of this session, with all its headers. `out`: LargestClaim bytes at most. `withCertificate`:
     // some receiver may not know it.
@@ -68,7 +66,7 @@ public:
                      std::span<std::uint8_t> out);
 
     // The number of the next datagram. Numbers are never used twice, nor where a try failed.
-    std::uint64_t Next() const { return _next; }
+    std::uint64_t Next() const { return _self.Next; }
 
 private:
     struct Request
@@ -81,6 +79,7 @@ private:
         const SecretKey *Key = nullptr;
     };
 
+    bool MaySealIn(Epoch epoch, OuterClass contents) const;
     Result SealMessage(std::span<const std::uint8_t> message, Request request, std::span<std::uint8_t> out);
     // Seals `size` bytes, which are in the work space behind the context.
     Result SealTries(const Request &request, std::size_t size, std::span<std::uint8_t> out);
@@ -92,7 +91,6 @@ private:
     Self &_self;
     const EpochSecrets &_epochs;
     SessionTag _tag;
-    std::uint64_t _next;
     Aead _aead;
     // The context, the plaintext, a signature.
     std::vector<std::uint8_t> _work;

@@ -15,7 +15,9 @@
 namespace Rabit::Envelope
 {
 
-// This node in one session: one opening, on one path. Not thread-safe, since its keys are not.
+// This node in one session: one opening, on one path. One thread may seal while another opens, each under a
+// lock of its own. The lock of sealing guards `Signing` and `Next`; the lock of opening guards `Agreement`.
+// Nothing else changes after the start.
 struct Self
 {
     SigningKey Signing;
@@ -25,6 +27,8 @@ struct Self
     std::vector<std::uint8_t> Certificate;
     // Each datagram of this session begins with one of these, at most four: the vendor's, and our own.
     std::vector<RtpsHeader> Headers;
+    // The number of the next datagram: one space for all kinds and receivers, so that no key sees one twice.
+    std::uint64_t Next = 0;
 
     // Empty if the certificate is none or is not for these keys, if there is no header or there are too many,
     // or if OpenSSL fails.

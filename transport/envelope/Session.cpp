@@ -41,6 +41,12 @@ void Session::Hear(TimePoint now)
     }
 }
 
+bool Session::IsSuspect(bool inNewest, TimePoint now) const
+{
+    const std::optional<TimePoint> &at = _forged[inNewest ? 1 : 0];
+    return at && now - *at <= SuspectFor;
+}
+
 Session::EpochKeys &Session::KeysOf(Epoch epoch)
 {
     // There are as many places as epochs are known, so the datagrams of no two epochs make each other's keys
@@ -91,16 +97,12 @@ const SecretKey *Session::KeyFrom(Epoch epoch, const SecretKey &secret, const Ag
     return PointerTo(keys.From);
 }
 
-const SecretKey *Session::KeyTo(Epoch epoch, const SecretKey &secret, const AgreementKey &own,
-                                const End &self)
+std::optional<Receiver> Session::ReceiverIn(Epoch epoch, const SecretKey &secret, const AgreementKey &own,
+                                            const End &self)
 {
-    EpochKeys &keys = KeysOf(epoch);
     const SecretKey *const shared = SharedWith(own);
-    if (!keys.To && shared != nullptr)
-    {
-        keys.To = PairwiseKey(secret, epoch, *shared, self, _sender);
-    }
-    return PointerTo(keys.To);
+    const auto key = shared != nullptr ? PairwiseKey(secret, epoch, *shared, self, _sender) : std::nullopt;
+    return key ? std::optional(Receiver{.Of = _sender, .Epoch = epoch, .Key = *key}) : std::nullopt;
 }
 
 }  // namespace Rabit::Envelope

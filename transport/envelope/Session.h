@@ -12,6 +12,7 @@
 #include "envelope/Certificate.h"
 #include "envelope/EpochSecrets.h"
 #include "envelope/KeyDerivation.h"
+#include "envelope/Receiver.h"
 #include "envelope/ReplayWindow.h"
 #include "envelope/VerifyingKey.h"
 
@@ -26,12 +27,14 @@ struct KnownCertificate
     VerifyingKey Key;
 };
 
-// One session of another node, as this node knows it. Made from a claim that was verified. Not thread-safe.
+// One session of another node, as this node knows it. Made from a claim that was verified. Not thread-safe:
+// the lock of opening guards it (SessionTable). Sealing needs no more than a `Receiver`.
 class Session
 {
 public:
     // A session that was silent for longer has to prove again that it is live: what comes may be a recording.
     static constexpr std::chrono::seconds SilenceAllowed{10};
+    static constexpr std::chrono::seconds SuspectFor{10};
 
     Session(const End &sender, std::shared_ptr<KnownCertificate> certificate, std::vector<RtpsHeader> headers,
             TimePoint now)
@@ -57,13 +60,21 @@ public:
     // A verified datagram came. Without effect unless the session is fresh.
     void Hear(TimePoint now);
 
+    // A datagram that a member made in this session's name had a bad signature. `inNewest`: it was of the
+    // newest epoch. Former ones count apart, since revoked members know their secrets, too.
+    void Forge(bool inNewest, TimePoint now) { _forged[inNewest ? 1 : 0] = now; }
+    // True if Forge was called in the last SuspectFor.
+    bool IsSuspect(bool inNewest, TimePoint now) const;
+
     ReplayWindow &Window() { return _window; }
 
-    // Keys, derived when they are first used: at most once for each epoch (EpochSecrets::Most). Null if
-    // OpenSSL fails, or if the peer's public key is of low order.
+    // Keys of what it sends, derived when they are first used: at most once for each epoch
+    // (EpochSecrets::Most). Null if OpenSSL fails, or if the peer's public key is of low order.
     const SecretKey *GroupKeyOf(Epoch epoch, const SecretKey &secret);
     const SecretKey *KeyFrom(Epoch epoch, const SecretKey &secret, const AgreementKey &own, const End &self);
-    const SecretKey *KeyTo(Epoch epoch, const SecretKey &secret, const AgreementKey &own, const End &self);
+    // Returns a copy for `Sealer`, with the key of that epoch. Empty for the same reasons.
+    std::optional<Receiver> ReceiverIn(Epoch epoch, const SecretKey &secret, const AgreementKey &own,
+                                       const End &self);
 
 private:
     struct EpochKeys
@@ -71,7 +82,6 @@ private:
         Epoch Of = 0;
         std::optional<SecretKey> Group;
         std::optional<SecretKey> From;
-        std::optional<SecretKey> To;
     };
 
     EpochKeys &KeysOf(Epoch epoch);
@@ -83,6 +93,7 @@ private:
     ReplayWindow _window;
     bool _proven = false;
     TimePoint _heard;
+    std::array<std::optional<TimePoint>, 2> _forged{};  // in former epochs; in the newest
     bool _sharedTried = false;
     std::optional<SecretKey> _shared;
     std::array<EpochKeys, EpochSecrets::Most> _keys{};

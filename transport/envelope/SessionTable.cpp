@@ -1,6 +1,7 @@
 #include "envelope/SessionTable.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "guard/RtpsMessage.h"
@@ -37,20 +38,24 @@ SessionTable::Result SessionTable::Take(const Facts &facts, TimePoint now)
         return {.Verdict = ClaimVerdict::TagTaken, .Holder = _name};
     }
     // A proof displaces a mere claim.
-    if (known != nullptr && !isSame && (known->IsProven() || !facts.LiveAt))
+    if (known != nullptr && !isSame && (Holds(*known, now) || !facts.LiveAt))
     {
         return {.Verdict = ClaimVerdict::TagTaken, .Holder = known->Certificate().Content.Name};
     }
-    if (const std::string *const holder = HolderOf(facts))
+    if (const std::string *const holder = HolderOf(facts, now))
     {
         return {.Verdict = ClaimVerdict::PrefixTaken, .Holder = *holder};
     }
     if (!isSame && known != nullptr)
     {
-        _sessions.erase(tag);
+        Displace(_sessions.find(tag));
         known = nullptr;
     }
-    if (!MakeRoom(facts, known))
+    if (facts.LiveAt)
+    {
+        EndSilentHoldersOf(facts);
+    }
+    if (!MakeRoom(facts, known, now))
     {
         return {.Verdict = ClaimVerdict::TooMany, .Holder = facts.Certificate->Content.Name};
     }
@@ -58,6 +63,11 @@ SessionTable::Result SessionTable::Take(const Facts &facts, TimePoint now)
     {
         auto made = std::make_unique<Session>(facts.Sender, facts.Certificate, facts.Headers, now);
         known = _sessions.emplace(tag, std::move(made)).first->second.get();
+        if (const std::uint64_t *const highest = _displaced.Find(facts.Sender))
+        {
+            known->Window().SetFloor(*highest + 1);
+            _displaced.Erase(facts.Sender);
+        }
     }
     if (facts.LiveAt)
     {
@@ -69,26 +79,65 @@ SessionTable::Result SessionTable::Take(const Facts &facts, TimePoint now)
             .Of = known};
 }
 
-const std::string *SessionTable::HolderOf(const Facts &facts) const
+bool SessionTable::Holds(const Session &session, TimePoint now)
 {
-    for (const RtpsHeader &header : facts.Headers)
+    return session.IsProven() && now - session.Heard() <= HoldsFor;
+}
+
+bool SessionTable::BindsAnyOf(const Session &session, const Facts &facts)
+{
+    return std::any_of(facts.Headers.begin(), facts.Headers.end(),
+                       [&session](const RtpsHeader &header)
+                       { return session.Binds(Rtps::SenderOf(header)); });
+}
+
+const std::string *SessionTable::HolderOf(const Facts &facts, TimePoint now) const
+{
+    const bool isOwn = std::any_of(facts.Headers.begin(), facts.Headers.end(),
+                                   [this](const RtpsHeader &header)
+                                   {
+                                       return std::find(_ownPrefixes.begin(), _ownPrefixes.end(),
+                                                        Rtps::SenderOf(header)) != _ownPrefixes.end();
+                                   });
+    if (isOwn && facts.Sender.Certificate != _self.Certificate)
     {
-        const Rtps::GuidPrefix prefix = Rtps::SenderOf(header);
-        if (facts.Sender.Certificate != _self.Certificate &&
-            std::find(_ownPrefixes.begin(), _ownPrefixes.end(), prefix) != _ownPrefixes.end())
+        return &_name;
+    }
+    for (const auto &[tag, session] : _sessions)
+    {
+        if (Holds(*session, now) && session->Sender().Certificate != facts.Sender.Certificate &&
+            BindsAnyOf(*session, facts))
         {
-            return &_name;
-        }
-        for (const auto &[tag, session] : _sessions)
-        {
-            if (session->IsProven() && session->Sender().Certificate != facts.Sender.Certificate &&
-                session->Binds(prefix))
-            {
-                return &session->Certificate().Content.Name;
-            }
+            return &session->Certificate().Content.Name;
         }
     }
     return nullptr;
+}
+
+// HolderOf has refused claims of prefixes that are held: those that are left are silent. A session that was
+// silent must not speak for a prefix that is another's now.
+void SessionTable::EndSilentHoldersOf(const Facts &facts)
+{
+    for (auto each = _sessions.begin(); each != _sessions.end();)
+    {
+        const Session &session = *each->second;
+        const bool isSilentHolder = session.IsProven() &&
+                                    session.Sender().Certificate != facts.Sender.Certificate &&
+                                    BindsAnyOf(session, facts);
+        each = isSilentHolder ? Displace(each) : std::next(each);
+    }
+}
+
+SessionTable::Map::iterator SessionTable::Displace(Map::iterator which)
+{
+    _displaced.Put(which->second->Sender(), which->second->Window().Highest());
+    return _sessions.erase(which);
+}
+
+bool SessionTable::WasTaken(const End &sender, std::uint64_t number) const
+{
+    const std::uint64_t *const highest = _displaced.Find(sender);
+    return highest != nullptr && number <= *highest;
 }
 
 template <typename Fits>
@@ -106,7 +155,7 @@ SessionTable::Map::iterator SessionTable::LongestSilent(const Fits &fits)
     return found;
 }
 
-bool SessionTable::MakeRoom(const Facts &facts, const Session *known)
+bool SessionTable::MakeRoom(const Facts &facts, const Session *known, TimePoint now)
 {
     // A session that is proven by this claim becomes one of the proven ones.
     const bool isCounted = known == nullptr || (facts.LiveAt && !known->IsProven());
@@ -119,18 +168,21 @@ bool SessionTable::MakeRoom(const Facts &facts, const Session *known)
         _sessions.begin(), _sessions.end(), [&isAlike](const auto &each) { return isAlike(*each.second); }));
     if (isCounted && alike >= (facts.LiveAt ? MostProvenOfOne : MostUnprovenOfOne))
     {
-        _sessions.erase(LongestSilent(isAlike));
+        Displace(LongestSilent(isAlike));
     }
     if (known != nullptr || _sessions.size() < Most)
     {
         return true;
     }
-    const auto unproven = LongestSilent([](const Session &session) { return !session.IsProven(); });
-    if (unproven == _sessions.end())
+    // Mere claims displace each other alone.
+    const auto silent =
+        LongestSilent([&](const Session &session)
+                      { return !session.IsProven() || (facts.LiveAt && !Holds(session, now)); });
+    if (silent == _sessions.end())
     {
         return false;
     }
-    _sessions.erase(unproven);
+    Displace(silent);
     return true;
 }
 

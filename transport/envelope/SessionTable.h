@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "common/RecentMap.h"
 #include "envelope/Session.h"
 #include "envelope/Types.h"
 
@@ -28,8 +30,10 @@ enum class ClaimVerdict : std::uint8_t
 };
 
 // The sessions that may speak on one path. A session gets a place by a claim that was verified, and is proven
-// by a claim that answers this node's nonce. The first proven claim of a GUID prefix holds. Bounded. Pointers
-// to sessions hold until the next Take or End. Time is passed in. Not thread-safe.
+// by a claim that answers this node's nonce. The first proven claim of a GUID prefix holds, until its session
+// was silent for HoldsFor and another certificate proves that it has the prefix. Bounded. Pointers
+// to sessions hold until the next Take or End. Time is passed in. Not thread-safe: the lock of opening guards
+// the table and its sessions.
 class SessionTable
 {
 public:
@@ -39,6 +43,12 @@ public:
     // Recorded claims make such sessions. They displace each other, never a proven one.
     static constexpr std::size_t MostUnprovenOfOne = 4;
     static constexpr std::size_t Most = 2048;
+    // A proven session that was silent for longer makes room for one that is live. Longer than a battery or a
+    // flight behind a hill, since its prefix would be another's when it comes back.
+    static constexpr std::chrono::hours HoldsFor{1};
+    // Sessions that made room for others, whose highest numbers are kept: recorded claims of them are
+    // refused.
+    static constexpr std::size_t MostDisplaced = 1024;
 
     struct Facts
     {
@@ -62,6 +72,8 @@ public:
     Session *Find(SessionTag tag) const;
     // `facts` must be those of a claim whose certificate and signature were verified.
     Result Take(const Facts &facts, TimePoint now);
+    // True if the number is not above those that a displaced session had. So its claim is a recording.
+    bool WasTaken(const End &sender, std::uint64_t number) const;
     // Ends the sessions of revoked certificates.
     void EndRevoked(const EpochSecrets &epochs);
 
@@ -81,8 +93,13 @@ public:
 private:
     using Map = std::unordered_map<SessionTag, std::unique_ptr<Session>>;
 
-    const std::string *HolderOf(const Facts &facts) const;
-    bool MakeRoom(const Facts &facts, const Session *known);
+    static bool Holds(const Session &session, TimePoint now);
+    static bool BindsAnyOf(const Session &session, const Facts &facts);
+    const std::string *HolderOf(const Facts &facts, TimePoint now) const;
+    void EndSilentHoldersOf(const Facts &facts);
+    bool MakeRoom(const Facts &facts, const Session *known, TimePoint now);
+    // Ends a session and keeps its highest number. Returns the next one.
+    Map::iterator Displace(Map::iterator which);
     template <typename Fits>
     Map::iterator LongestSilent(const Fits &fits);
 
@@ -91,6 +108,7 @@ private:
     std::string _name;
     std::vector<Rtps::GuidPrefix> _ownPrefixes;
     Map _sessions;
+    RecentMap<End, std::uint64_t> _displaced{MostDisplaced};
 };
 
 }  // namespace Rabit::Envelope

@@ -19,7 +19,7 @@ struct Sealing
     Three Nodes;
     Bytes Message = Nodes.A.Message(126);
     Bytes Room = Bytes(LargestDatagram);
-    Session &To = Nodes.A.Known(Nodes.B);
+    Receiver To = Nodes.A.ReceiverOf(Nodes.B);
     std::uint64_t Done = 0;
 
     std::span<const std::uint8_t> ToAll()

@@ -238,6 +238,18 @@ TEST_F(SealBulletin, Has52BytesForANode)
     EXPECT_EQ(Written({4}, {1}).size() - Written({}, {1}).size(), 4u);
 }
 
+TEST_F(SealBulletin, EncryptsUnderAKeyForEachSerial)
+{
+    const PublicKey same = AgreementKey::Of(SeedOf(4, 1))->Public();
+    const Bytes bytes =
+        Bulletin::Write(2, {}, {{.Number = 1, .Agreement = same}, {.Number = 7, .Agreement = same}},
+                        SecondSecret, Once, Signs.Signing);
+    // Entries of 52 bytes begin at 39. Behind the serial is the encrypted secret.
+    const auto encrypted = [&bytes](std::size_t entry)
+    { return BytesOf(std::span(bytes).subspan(39 + 52 * entry + 4, 32)); };
+    EXPECT_NE(encrypted(0), encrypted(1));
+}
+
 TEST_F(SealBulletin, WithAnyBitFlippedIsNone)
 {
     VisitFlipped(Written(), [this](const Bytes &flipped)

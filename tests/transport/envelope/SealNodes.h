@@ -100,11 +100,12 @@ public:
               SeedOf(3, node), SeedOf(4, node), SessionOf(node, opening), authority.Certify(Name, node, node),
               headers.empty() ? std::vector<RtpsHeader>{HeaderOf(node), HeaderOf(node, 0x62)} : headers)),
           Sessions(Me.Own, Name, Me.Headers),
-          Seals(Me, Epochs, next),
+          Seals(Me, Epochs),
           Opens(Me, authority.Verifying, Epochs, Challenges, Sessions),
           _node(node),
           _opening(opening)
     {
+        Me.Next = next;
         Epochs.Learn(1, FirstSecret, {}, Start);
         Challenges.Set(NonceOf(), Start);
     }
@@ -125,13 +126,9 @@ public:
     {
         return Taken([&](auto out) { return Seals.SealGroup(message, contents, out); });
     }
-    Bytes Signed(const Bytes &message, const Node &to, OuterClass contents = OuterClass::Traffic)
-    {
-        return Taken([&](auto out) { return Seals.SealSigned(message, contents, Known(to), out); });
-    }
     Bytes Pairwise(const Bytes &message, const Node &to, OuterClass contents = OuterClass::Traffic)
     {
-        return Taken([&](auto out) { return Seals.SealPairwise(message, contents, Known(to), out); });
+        return Taken([&](auto out) { return Seals.SealPairwise(message, contents, ReceiverOf(to), out); });
     }
     Session &Known(const Node &other) const
     {
@@ -141,6 +138,12 @@ public:
             throw std::logic_error(Name + " does not know " + other.Name);
         }
         return *found;
+    }
+    // In the newest epoch.
+    Receiver ReceiverOf(const Node &other) const
+    {
+        const Epoch epoch = Epochs.Newest();
+        return Known(other).ReceiverIn(epoch, *Epochs.Secret(epoch), Me.Agreement, Me.Own).value();
     }
     // Takes the claim of another node that answers this node's nonce.
     void Meet(Node &other, TimePoint now = Start)
@@ -203,6 +206,29 @@ struct Three
         }
     }
 };
+
+// A datagram for all that a member made in another's name: right but for its signature. All
+// members know the epoch's secret, and so the other's key of group mode.
+inline Bytes ForgedGroup(Node &member, const Node &as, std::uint64_t number, Epoch epoch = 1,
+                         const SecretKey &secret = FirstSecret)
+{
+    const SecretKey key = GroupKey(secret, epoch, as.Me.Own).value();
+    const Bytes message = as.Message();
+    Bytes datagram(message.size() + 71);
+    WriteOuter({.Epoch = epoch, .Tag = TagOf(as.Me.Own), .Number = static_cast<std::uint32_t>(number)},
+               datagram);
+    Bytes work(OuterContextSize);
+    WriteOuterContext(datagram, number, as.Me.Own, AllSessions, as.Me.Headers[0], work);
+    work.insert(work.end(), message.begin() + 20, message.end());
+    const Signature signature = member.Me.Signing.Sign(work).value();
+    work.insert(work.end(), signature.begin(), signature.end());
+    if (!Aead().Seal(key, number, std::span(work).first(OuterContextSize),
+                     std::span(work).subspan(OuterContextSize), std::span(datagram).subspan(OuterSize)))
+    {
+        throw std::runtime_error("sealing failed");
+    }
+    return datagram;
+}
 
 inline Bytes BytesOf(std::span<const std::uint8_t> bytes)
 {

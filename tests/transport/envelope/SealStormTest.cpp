@@ -28,15 +28,15 @@ class SealStorm : public testing::Test, protected Three
 TEST_F(SealStorm, NoDatagramEndsLikeStatistics)
 {
     Bytes out(2000);
+    const Receiver toB = A.ReceiverOf(B);
     std::uint64_t padded = 0;
     const std::uint64_t count = Storm(20'000);
     for (std::uint64_t i = 0; i < count; ++i)
     {
         const Bytes message = A.Message(4 + 4 * (i % 40));
         const bool signs = i % 10 == 0;
-        const Sealer::Result result =
-            signs ? A.Seals.SealGroup(message, OuterClass::Traffic, out)
-                  : A.Seals.SealPairwise(message, OuterClass::Traffic, A.Known(B), out);
+        const Sealer::Result result = signs ? A.Seals.SealGroup(message, OuterClass::Traffic, out)
+                                            : A.Seals.SealPairwise(message, OuterClass::Traffic, toB, out);
         ASSERT_EQ(result.Fault, SealFault::None);
         const auto datagram = std::span(out).first(result.Size);
         ASSERT_FALSE(LooksLikeStatistics(datagram));
@@ -75,7 +75,7 @@ TEST_F(SealStorm, AHeaderThatLooksLikeStatisticsIsMovedByPadding)
         const std::size_t size = 60 + 3 + at - 7 - 20 - 4;
         Bytes out(500);
         const Sealer::Result result =
-            seals.SealPairwise(node.Message(size), OuterClass::Traffic, node.Known(B), out);
+            seals.SealPairwise(node.Message(size), OuterClass::Traffic, node.ReceiverOf(B), out);
         // Padding is a submessage, which begins at a multiple of 4: a message of another size cannot be
         // padded.
         EXPECT_EQ(result.Fault, size % 4 == 0 ? SealFault::None : SealFault::EndsLikeStatistics);
@@ -91,11 +91,12 @@ TEST_F(SealStorm, AMessageWhoseLastSubmessageIsOpenIsNotPadded)
     Bytes openAndEmpty = A.Message(100);
     openAndEmpty.insert(openAndEmpty.end(), {0x15, 0x05, 0, 0});
     Bytes out(1000);
+    const Receiver toB = A.ReceiverOf(B);
     for (int i = 0; i < 3000; ++i)
     {
         for (const Bytes &message : {open, openAndEmpty})
         {
-            const Sealer::Result result = A.Seals.SealPairwise(message, OuterClass::Traffic, A.Known(B), out);
+            const Sealer::Result result = A.Seals.SealPairwise(message, OuterClass::Traffic, toB, out);
             ASSERT_EQ(result.Fault, SealFault::None);
             ASSERT_EQ(result.Size, message.size() + 7);
         }
@@ -111,7 +112,7 @@ TEST_F(SealStorm, NoDamagedDatagramOpens)
     {
         const Bytes message = A.Message(4 * below(60) + 4);
         valid.push_back(A.ToAll(message));
-        valid.push_back(A.Signed(message, B, OuterClass::Meeting));
+        valid.push_back(A.ToAll(message, OuterClass::Meeting));
         valid.push_back(A.Pairwise(message, B, OuterClass::Bulletin));
         valid.push_back(A.Claims({B.NonceOf()}, i % 2 == 0));
         valid.push_back(C.ToAll(C.Message()));

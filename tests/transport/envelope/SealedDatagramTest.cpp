@@ -10,6 +10,7 @@ namespace
 {
 
 using namespace SealNodes;
+namespace Rtps = Rabit::Rtps;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
@@ -23,11 +24,8 @@ protected:
         ASSERT_EQ(result.Fault, OpenFault::None);
         EXPECT_EQ(BytesOf(result.Message), message);
     }
-    // All three kinds of A's datagrams that B opens.
-    std::vector<Bytes> OneOfEachKind()
-    {
-        return {A.ToAll(A.Message()), A.Signed(A.Message(), B), A.Pairwise(A.Message(), B)};
-    }
+    // Both kinds of A's datagrams that B opens.
+    std::vector<Bytes> OneOfEachKind() { return {A.ToAll(A.Message()), A.Pairwise(A.Message(), B)}; }
 };
 
 TEST_F(SealedDatagram, ForAllOpensAtAll)
@@ -40,11 +38,9 @@ TEST_F(SealedDatagram, ForAllOpensAtAll)
 
 TEST_F(SealedDatagram, ForOneOpensAtThatOneAlone)
 {
-    for (const Bytes &datagram : {A.Signed(A.Message(), B), A.Pairwise(A.Message(), B)})
-    {
-        EXPECT_EQ(C.Fault(datagram), OpenFault::NotAuthentic);
-        ExpectOpened(B, datagram, A.Message());
-    }
+    const Bytes datagram = A.Pairwise(A.Message(), B);
+    EXPECT_EQ(C.Fault(datagram), OpenFault::NotAuthentic);
+    ExpectOpened(B, datagram, A.Message());
 }
 
 TEST_F(SealedDatagram, InPairwiseModeAddsSevenBytes)
@@ -76,10 +72,9 @@ TEST_F(SealedDatagram, MayBeEmptyOrAsLargeAsADatagram)
     const Bytes empty(A.Me.Headers[0].begin(), A.Me.Headers[0].end());
     ExpectOpened(B, A.ToAll(empty), empty);
     ExpectOpened(B, A.Pairwise(empty, B), empty);
-    Bytes large = empty;
-    large.resize(LargestDatagram - 71, 0x5a);
+    Bytes large = A.Message(LargestDatagram - 71 - empty.size() - Rtps::SubmessageHeaderSize);
     ExpectOpened(B, A.ToAll(large), large);
-    large.resize(LargestDatagram - 7, 0x5a);
+    large = A.Message(LargestDatagram - 7 - empty.size() - Rtps::SubmessageHeaderSize);
     ExpectOpened(B, A.Pairwise(large, B), large);
 }
 
@@ -90,7 +85,8 @@ TEST_F(SealedDatagram, IsRefusedWhereItWouldBeTooLarge)
     Bytes out(LargestDatagram + 1000);
     EXPECT_EQ(A.Seals.SealGroup(large, OuterClass::Traffic, out).Fault, SealFault::TooLarge);
     large.resize(LargestDatagram - 6);
-    EXPECT_EQ(A.Seals.SealPairwise(large, OuterClass::Traffic, A.Known(B), out).Fault, SealFault::TooLarge);
+    EXPECT_EQ(A.Seals.SealPairwise(large, OuterClass::Traffic, A.ReceiverOf(B), out).Fault,
+              SealFault::TooLarge);
 }
 
 TEST_F(SealedDatagram, IsRefusedWhereTheBufferIsTooSmall)
@@ -132,7 +128,8 @@ TEST_F(SealedDatagram, WithAFieldOfItsHeaderChangedSaysWhy)
         return B.Fault(changed);
     };
     EXPECT_EQ(faultWith(0, 0x00), OpenFault::Malformed);      // not sealed
-    EXPECT_EQ(faultWith(0, 0x90), OpenFault::NotAuthentic);   // another kind
+    EXPECT_EQ(faultWith(0, 0x90), OpenFault::Malformed);      // the reserved kind
+    EXPECT_EQ(faultWith(0, 0xa0), OpenFault::NotAuthentic);   // another kind
     EXPECT_EQ(faultWith(0, 0x84), OpenFault::NotAuthentic);   // another class
     EXPECT_EQ(faultWith(0, 0x81), OpenFault::NotAuthentic);   // another header of the session
     EXPECT_EQ(faultWith(0, 0x82), OpenFault::UnknownHeader);  // none
@@ -166,7 +163,7 @@ TEST_F(SealedDatagram, ComesOnce)
         EXPECT_EQ(B.Fault(datagram), OpenFault::None);
         EXPECT_EQ(B.Fault(datagram), OpenFault::Replayed);
     }
-    EXPECT_EQ(B.Opens.Count(OpenFault::Replayed), 3u);
+    EXPECT_EQ(B.Opens.Count(OpenFault::Replayed), 2u);
 }
 
 TEST_F(SealedDatagram, ThatWasDamagedMayComeWhole)
@@ -218,37 +215,19 @@ TEST_F(SealedDatagram, OfAnotherSenderUnderItsTagDoesNotOpen)
 // C knows all that a member knows: the epoch's secret, and so A's key of group mode.
 class MemberAsAnother : public SealedDatagram
 {
-protected:
-    // Seals as A would, but for the signature, which C makes.
-    Bytes ForgedGroup(std::uint64_t number, const Bytes &message)
-    {
-        const SecretKey key = *GroupKey(FirstSecret, 1, A.Me.Own);
-        Bytes datagram(message.size() + 71);
-        WriteOuter({.Epoch = 1, .Tag = TagOf(A.Me.Own), .Number = static_cast<std::uint32_t>(number)},
-                   datagram);
-        Bytes work(OuterContextSize);
-        WriteOuterContext(datagram, number, A.Me.Own, AllSessions, A.Me.Headers[0], work);
-        work.insert(work.end(), message.begin() + 20, message.end());
-        const Signature signature = *C.Me.Signing.Sign(work);
-        work.insert(work.end(), signature.begin(), signature.end());
-        EXPECT_TRUE(Aead().Seal(key, number, std::span(work).first(OuterContextSize),
-                                std::span(work).subspan(OuterContextSize),
-                                std::span(datagram).subspan(OuterSize)));
-        return datagram;
-    }
 };
 
 TEST_F(MemberAsAnother, CannotSignForIt)
 {
     const std::uint64_t highest = B.Known(A).Window().Highest();
-    const Bytes forged = ForgedGroup(500, A.Message());
+    const Bytes forged = ForgedGroup(C, A, 500);
     EXPECT_EQ(B.Fault(forged), OpenFault::BadSignature);
     // Its number was not marked.
     EXPECT_EQ(B.Fault(forged), OpenFault::BadSignature);
     EXPECT_EQ(B.Known(A).Window().Highest(), highest);
 }
 
-TEST_F(MemberAsAnother, CannotUseItsSignatureForAnotherNumberReceiverOrClass)
+TEST_F(MemberAsAnother, CannotUseItsSignatureForAnotherNumberKindOrClass)
 {
     // C opens A's datagram to all, takes its signature, and seals it again.
     const Bytes message = A.Message();
@@ -273,8 +252,9 @@ TEST_F(MemberAsAnother, CannotUseItsSignatureForAnotherNumberReceiverOrClass)
         return datagram;
     };
     EXPECT_EQ(B.Fault(sealedAgain({}, number + 1, AllSessions, 0)), OpenFault::BadSignature);
-    EXPECT_EQ(B.Fault(sealedAgain({.Kind = OuterKind::Signed}, number, B.Me.Own.Session, 0)),
-              OpenFault::BadSignature);
+    // A datagram that is signed and names its receiver is of no kind: C could take the session that it names.
+    EXPECT_EQ(B.Fault(sealedAgain({.Kind = OuterKind{1}}, number, B.Me.Own.Session, 0)),
+              OpenFault::Malformed);
     EXPECT_EQ(B.Fault(sealedAgain({.Class = OuterClass::Meeting}, number, AllSessions, 0)),
               OpenFault::BadSignature);
     EXPECT_EQ(B.Fault(sealedAgain({}, number, AllSessions, 1)), OpenFault::BadSignature);
@@ -285,7 +265,7 @@ TEST_F(MemberAsAnother, CannotUseItsSignatureForAnotherNumberReceiverOrClass)
 
 TEST_F(MemberAsAnother, CannotMakeThePairwiseKeyOfTwoOthers)
 {
-    const SecretKey wanted = *A.Known(B).KeyTo(1, FirstSecret, A.Me.Agreement, A.Me.Own);
+    const SecretKey wanted = A.ReceiverOf(B).Key;
     EXPECT_EQ(B.Known(A).KeyFrom(1, FirstSecret, B.Me.Agreement, B.Me.Own)->Bytes(), wanted.Bytes());
     // All that C can compute: its own secret with either, and both ends' names.
     for (const Node *with : {&A, &B})
@@ -320,22 +300,49 @@ TEST_F(SealedDatagram, BackToItsSenderDoesNotOpen)
     EXPECT_EQ(A.Fault(back), OpenFault::NotAuthentic);
 }
 
-TEST_F(SealedDatagram, NamesNoSourceThatTheSenderHasNotBound)
+// Messages of A with an INFO_SRC.
+class SealedSource : public SealedDatagram
 {
-    const auto withSource = [this](const RtpsHeader &source)
+protected:
+    // `front`: submessages in front of it.
+    Bytes WithSource(const RtpsHeader &source, const Bytes &front = {}) const
     {
         Bytes message(A.Me.Headers[0].begin(), A.Me.Headers[0].end());
+        message.insert(message.end(), front.begin(), front.end());
         message.insert(message.end(), {0x0c, 0x01, 20, 0, 0, 0, 0, 0});
         message.insert(message.end(), source.begin() + 4, source.end());
         return message;
-    };
-    ExpectOpened(B, A.ToAll(withSource(A.Me.Headers[1])), withSource(A.Me.Headers[1]));
-    const Bytes foreign = A.Pairwise(withSource(C.Me.Headers[0]), B);
+    }
+};
+
+TEST_F(SealedSource, IsOneThatTheSenderHasBound)
+{
+    ExpectOpened(B, A.ToAll(WithSource(A.Me.Headers[1])), WithSource(A.Me.Headers[1]));
+    const Bytes foreign = A.Pairwise(WithSource(C.Me.Headers[0]), B);
     EXPECT_EQ(B.Fault(foreign), OpenFault::ForeignSource);
     EXPECT_EQ(B.Fault(foreign), OpenFault::Replayed);
-    Bytes cut = withSource(A.Me.Headers[0]);
+    Bytes cut = WithSource(A.Me.Headers[0]);
     cut.resize(cut.size() - 8);
     EXPECT_EQ(B.Fault(A.ToAll(cut)), OpenFault::ForeignSource);
+}
+
+TEST_F(SealedSource, IsNotHiddenInASubmessageWhoseEndParsersRoundUp)
+{
+    // A PAD of 2 bytes. Without rounding up, a second PAD begins 2 bytes in front of INFO_SRC and swallows
+    // it.
+    const Bytes front = {0x01, 0x01, 2, 0, 0, 0, 0x01, 0x01};
+    EXPECT_EQ(B.Fault(A.ToAll(WithSource(C.Me.Headers[0], front))), OpenFault::ForeignSource);
+}
+
+TEST_F(SealedSource, HasItsLengthAndItsVersion)
+{
+    Bytes longer = WithSource(A.Me.Headers[0]);
+    longer[Rtps::RtpsHeaderSize + 2] = 24;
+    longer.resize(longer.size() + 4);
+    EXPECT_EQ(B.Fault(A.ToAll(longer)), OpenFault::ForeignSource);
+    RtpsHeader other = A.Me.Headers[0];
+    other[4] = 3;
+    EXPECT_EQ(B.Fault(A.ToAll(WithSource(other))), OpenFault::ForeignSource);
 }
 
 TEST_F(SealedDatagram, OfTwoSessionsOfANodeOpensInEach)
@@ -355,15 +362,12 @@ TEST_F(SealedDatagram, OfTwoSessionsOfANodeOpensInEach)
 TEST_F(SealedDatagram, ForAFormerSessionOfTheReceiverDoesNotOpen)
 {
     const Bytes toOld = A.Pairwise(A.Message(), B);
-    const Bytes signedToOld = A.Signed(A.Message(), B);
     Node again(Signs, "uav2", 2, 1);
     again.Meet(A);
     EXPECT_EQ(again.Fault(toOld), OpenFault::TooOld);  // below the proof
     // A later number does not help it.
     const Bytes later = A.Pairwise(A.Message(), B);
     EXPECT_EQ(again.Fault(later), OpenFault::NotAuthentic);
-    EXPECT_EQ(again.Fault(A.Signed(A.Message(), B)), OpenFault::NotAuthentic);
-    EXPECT_EQ(again.Fault(signedToOld), OpenFault::TooOld);
 }
 
 TEST(SealedNumbers, BeginAtNothingAndAreNeverUsedTwice)
@@ -374,6 +378,17 @@ TEST(SealedNumbers, BeginAtNothingAndAreNeverUsedTwice)
     three.A.ToAll(three.A.Message());
     three.A.Pairwise(three.A.Message(), three.B);
     EXPECT_GE(three.A.Seals.Next(), before + 2);
+}
+
+TEST(SealedNumbers, OfOneSessionAreTheSameForEachOfItsSealers)
+{
+    Three three;
+    const std::uint64_t before = three.A.Seals.Next();
+    Sealer second(three.A.Me, three.A.Epochs);
+    EXPECT_EQ(second.Next(), before);
+    three.A.ToAll(three.A.Message());
+    EXPECT_EQ(second.Next(), three.A.Seals.Next());
+    EXPECT_GT(second.Next(), before);
 }
 
 TEST(SealedNumbers, WrapInTheirLowHalf)

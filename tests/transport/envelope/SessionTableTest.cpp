@@ -84,6 +84,34 @@ TEST_F(SealSessions, OfTwoCertificatesMayNot)
     EXPECT_EQ(Table.Size(), 1u);
 }
 
+TEST_F(SealSessions, APrefixOfANodeThatWasSilentForAnHourGoesToALiveOne)
+{
+    Verdict(Facts(1, 0, true));
+    SessionTable::Facts other = Facts(2, 0, true, 1);
+    const TimePoint hour = Start + SessionTable::HoldsFor;
+    other.LiveAt = hour;
+    EXPECT_EQ(Verdict(other, hour), ClaimVerdict::PrefixTaken);
+    const TimePoint later = hour + seconds(1);
+    other.LiveAt = later;
+    EXPECT_EQ(Verdict(other, later), ClaimVerdict::Proven);
+    // The former holder does not speak for it any more, and is refused when it comes back.
+    EXPECT_EQ(Find(1), nullptr);
+    SessionTable::Facts back = Facts(1, 0, true);
+    back.LiveAt = later;
+    const SessionTable::Result refused = Table.Take(back, later);
+    EXPECT_EQ(refused.Verdict, ClaimVerdict::PrefixTaken);
+    EXPECT_EQ(refused.Holder, "uav2");
+}
+
+TEST_F(SealSessions, AMereClaimTakesNothingOfANodeThatWasSilent)
+{
+    Verdict(Facts(1, 0, true));
+    const TimePoint later = Start + SessionTable::HoldsFor + seconds(1);
+    EXPECT_EQ(Verdict(Facts(2, 0, false, 1), later), ClaimVerdict::Added);
+    ASSERT_NE(Find(1), nullptr);
+    EXPECT_TRUE(Find(1)->IsProven());
+}
+
 TEST_F(SealSessions, AMereClaimOfAPrefixHoldsNothing)
 {
     Verdict(Facts(2, 0, false, 1));
@@ -117,6 +145,24 @@ TEST_F(SealSessions, RecordedClaimsDisplaceEachOtherAlone)
     EXPECT_NE(Find(2), nullptr);
     EXPECT_NE(Find(1, 99), nullptr);
     EXPECT_EQ(Find(1, 99 - SessionTable::MostUnprovenOfOne), nullptr);
+}
+
+TEST_F(SealSessions, ThatWereDisplacedComeBackWithHigherNumbersAlone)
+{
+    Verdict(Facts(1));
+    const End displaced = Find(1)->Sender();
+    Find(1)->Window().Mark(7);
+    for (std::uint8_t opening = 1; opening <= SessionTable::MostUnprovenOfOne; ++opening)
+    {
+        Verdict(Facts(1, opening), Start + seconds(opening));
+    }
+    ASSERT_EQ(Find(1), nullptr);
+    EXPECT_TRUE(Table.WasTaken(displaced, 7));
+    EXPECT_FALSE(Table.WasTaken(displaced, 8));
+    // Its former datagrams do not open once it is back.
+    Verdict(Facts(1), Start + seconds(9));
+    EXPECT_EQ(Find(1)->Window().Look(7), ReplayWindow::Verdict::TooOld);
+    EXPECT_EQ(Find(1)->Window().Look(8), ReplayWindow::Verdict::New);
 }
 
 TEST_F(SealSessions, OfOneCertificateThatAreProvenAreBounded)
@@ -160,6 +206,11 @@ TEST_F(SealSessions, AreBoundedInAll)
     EXPECT_EQ(Verdict(another(5001, true)), ClaimVerdict::Proven);
     EXPECT_EQ(Verdict(another(5002, true)), ClaimVerdict::TooMany);
     EXPECT_EQ(Verdict(another(5003, false)), ClaimVerdict::TooMany);
+    EXPECT_EQ(Table.Size(), SessionTable::Most);
+    // One that was silent for an hour makes room for one that is live, not for a mere claim.
+    const TimePoint later = Start + SessionTable::HoldsFor + seconds(1);
+    EXPECT_EQ(Verdict(another(5004, false), later), ClaimVerdict::TooMany);
+    EXPECT_EQ(Verdict(another(5005, true), later), ClaimVerdict::Proven);
     EXPECT_EQ(Table.Size(), SessionTable::Most);
 }
 
@@ -209,7 +260,7 @@ TEST_F(SealSessions, AProofDisplacesAMereClaimOfItsTag)
     EXPECT_EQ(Table.Size(), 1u);
 }
 
-TEST_F(SealSessions, DeriveKeysOfEachEpochOnce)
+TEST_F(SealSessions, DeriveKeysOfWhatTheySendOnceForEachEpoch)
 {
     Verdict(Facts(1));
     Session &session = *Find(1);
@@ -219,7 +270,7 @@ TEST_F(SealSessions, DeriveKeysOfEachEpochOnce)
     {
         keys.insert(session.GroupKeyOf(epoch, FirstSecret)->Bytes());
         keys.insert(session.KeyFrom(epoch, FirstSecret, own, Own)->Bytes());
-        keys.insert(session.KeyTo(epoch, FirstSecret, own, Own)->Bytes());
+        keys.insert(session.ReceiverIn(epoch, FirstSecret, own, Own)->Key.Bytes());
     }
     EXPECT_EQ(keys.size(), 3 * EpochSecrets::Most);
     // They are kept: another secret changes nothing.
