@@ -2,6 +2,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rabit/base/NaturalOrder.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
 
 namespace Rabit::Tool
 {
@@ -158,6 +163,15 @@ TEST(Offers, DefinitionsThatDifferNameNodesInTheirNaturalOrder)
                              NodeOf("uav3", "Pose", "Uav::Pose", 2)});
     ASSERT_THAT(lines, SizeIs(1));
     EXPECT_THAT(lines[0], ::testing::HasSubstr("`Uav::Pose`: uav2, uav10 with"));
+}
+
+TEST(NaturalOrder, ComparesNumbersByTheirValueAlsoWithLeadingZeros)
+{
+    const std::vector<std::string> ordered{"Uav1",   "uav",     "uav01",  "uav1",   "uav2",  "uav09",
+                                           "uav010", "uav10.2", "uav10a", "uav011", "uav100"};
+    std::vector<std::string> mixed(ordered.rbegin(), ordered.rend());
+    std::sort(mixed.begin(), mixed.end(), NaturalOrder());
+    EXPECT_EQ(mixed, ordered);
 }
 
 TEST(Offers, WhoIsLostOffersNothing)
