@@ -165,7 +165,7 @@ void WantCheck::Fail(int line, const std::string &text)
     FleetCheck::Add(_findings, {.File = _config.File, .Line = line, .Nodes = {_config.Node}, .Text = text});
 }
 
-void WantCheck::TellNobody(const std::string &pattern, const std::string &what, int line)
+void WantCheck::TellNobody(const std::string &pattern, const std::string &what, int line, MayBe mayBe)
 {
     for (const GatewayConfig &other : _fleet)
     {
@@ -189,13 +189,24 @@ void WantCheck::TellNobody(const std::string &pattern, const std::string &what, 
                                     .IsProblem = near != nullptr});
         return;
     }
-    Fail(line,
-         what + ": no other node is called `" + pattern + "`" + NearestWordHint(pattern, NamesOf(_others)));
+    const std::string hint = NearestWordHint(pattern, NamesOf(_others));
+    if (mayBe == MayBe::Tool && !hint.starts_with("; did you mean"))
+    {
+        FleetCheck::Add(_findings, {.File = _config.File,
+                                    .Line = line,
+                                    .Nodes = {_config.Node},
+                                    .Text = what + ": none of the files is of `" + pattern +
+                                            "`; a tool of that name may send (`rabit send --node`)",
+                                    .IsProblem = false});
+        return;
+    }
+    Fail(line, what + ": no other node is called `" + pattern + "`" + hint);
 }
 
 // Returns the other nodes that match, and reports patterns without a match: every plain name must match, and
 // at least one of several patterns.
-WantCheck::Nodes WantCheck::Meant(const std::vector<std::string> &patterns, const std::string &what, int line)
+WantCheck::Nodes WantCheck::Meant(const std::vector<std::string> &patterns, const std::string &what, int line,
+                                  MayBe mayBe)
 {
     Nodes meant;
     std::copy_if(_others.begin(), _others.end(), std::back_inserter(meant),
@@ -208,7 +219,7 @@ WantCheck::Nodes WantCheck::Meant(const std::vector<std::string> &patterns, cons
                                          { return MatchesPattern(pattern, other->Node); });
         if (!isThere && (meant.empty() || !IsPattern(pattern)))
         {
-            TellNobody(pattern, what, line);
+            TellNobody(pattern, what, line, mayBe);
         }
         if (meant.empty())
         {
@@ -277,7 +288,7 @@ void WantCheck::CheckAcceptance(const AcceptRule &rule)
 {
     if (!IsEverybody(rule.From))
     {
-        static_cast<void>(Meant(rule.From, "accept " + rule.Queue, rule.Line));
+        static_cast<void>(Meant(rule.From, "accept " + rule.Queue, rule.Line, MayBe::Tool));
     }
 }
 

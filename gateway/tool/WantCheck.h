@@ -24,6 +24,12 @@ public:
 
 private:
     using Nodes = std::vector<const GatewayConfig *>;
+    // The program that a name may be of. A tool sends to queues, and has no file among those of the fleet.
+    enum class MayBe
+    {
+        NodeAlone,
+        Tool
+    };
 
     void CheckSubscription(const SubscribeRule &rule);
     void CheckPublication(const PublishRule &rule);
@@ -32,8 +38,9 @@ private:
 
     void Fail(int line, const std::string &text);
     // Returns the other nodes in the domain that match; reports patterns without a match.
-    Nodes Meant(const std::vector<std::string> &patterns, const std::string &what, int line);
-    void TellNobody(const std::string &pattern, const std::string &what, int line);
+    Nodes Meant(const std::vector<std::string> &patterns, const std::string &what, int line,
+                MayBe mayBe = MayBe::NodeAlone);
+    void TellNobody(const std::string &pattern, const std::string &what, int line, MayBe mayBe);
 
     const GatewayConfig &_config;
     const std::vector<GatewayConfig> &_fleet;

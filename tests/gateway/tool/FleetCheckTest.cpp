@@ -287,6 +287,15 @@ TEST(FleetCheck, ASenderThatNobodyAcceptsFromIsTold)
                     "ground"));
 }
 
+TEST(FleetCheck, ASenderWithoutAFileMayBeATool)
+{
+    GatewayConfig uav = NodeOf("uav1");
+    uav.Accept = {Accepts("MissionControl", {"ground", "laptop"})};
+    EXPECT_THAT(LinesOf({uav, NodeOf("ground")}),
+                ElementsAre("uav1.yaml:30: note: accept MissionControl: none of the files is of `laptop`; a "
+                            "tool of that name may send (`rabit send --node`)"));
+}
+
 TEST(FleetCheck, TheSameOfSeveralNodesOfOneFileIsOneLine)
 {
     GatewayConfig one = NodeOf("uav1");
