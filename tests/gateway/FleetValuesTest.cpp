@@ -98,6 +98,57 @@ TEST_F(FleetValuesTest, WarnOnceIfNoneComesWhileAnotherNodeIsUp)
         "the gateway's configuration brings it; did you mean `Poses`?");
 }
 
+TEST_F(FleetValuesTest, WarnWithTheReasonOfTheGatewayIfItSubscribes)
+{
+    LogLines log;
+    Start();
+    const auto fleet = std::make_shared<Gateway::Fleet>();
+    ASSERT_TRUE(_workspace.AddPublishSubscribeMessage("Gateway/Fleet", fleet));
+    fleet->nodes.emplace_back().state = Gateway::NodeState::UP;
+    fleet->problems.push_back({"subscribe Poses", "uav1", "another message"});
+    fleet->problems.push_back({"subscribe Pose", "uav1", "uav1 does not publish `Pose`"});
+    fleet->PostMessage();
+    Run(20s);
+    ASSERT_EQ(log.Lines.size(), 1u);
+    EXPECT_EQ(log.Lines[0],
+              "Follower: other nodes are heard, and no `*/Pose` of its class came in 5 s: uav1 does not "
+              "publish `Pose`");
+}
+
+TEST_F(FleetValuesTest, WarnOfValuesOfAnotherClass)
+{
+    LogLines log;
+    Start();
+    const auto other = std::make_shared<Gateway::Fleet>();
+    ASSERT_TRUE(_workspace.AddPublishSubscribeMessage("uav1/Pose", other));
+    const auto fleet = std::make_shared<Gateway::Fleet>();
+    ASSERT_TRUE(_workspace.AddPublishSubscribeMessage("Gateway/Fleet", fleet));
+    fleet->nodes.emplace_back().state = Gateway::NodeState::UP;
+    fleet->PostMessage();
+    Run(20s);
+    ASSERT_EQ(log.Lines.size(), 1u);
+    EXPECT_EQ(log.Lines[0],
+              "Follower: other nodes are heard, and no `*/Pose` of its class came in 5 s: `uav1/Pose` is of "
+              "another class");
+}
+
+TEST_F(FleetValuesTest, DoNotGuessAMessageWithAnotherName)
+{
+    LogLines log;
+    Start();
+    Post("uav1/Health", 1);
+    const auto fleet = std::make_shared<Gateway::Fleet>();
+    ASSERT_TRUE(_workspace.AddPublishSubscribeMessage("Gateway/Fleet", fleet));
+    fleet->nodes.emplace_back().state = Gateway::NodeState::UP;
+    fleet->PostMessage();
+    Run(20s);
+    ASSERT_EQ(log.Lines.size(), 1u);
+    EXPECT_EQ(
+        log.Lines[0],
+        "Follower: other nodes are heard, and no `*/Pose` of its class came in 5 s: a `subscribe` entry "
+        "of the gateway's configuration brings it");
+}
+
 TEST_F(FleetValuesTest, DoNotWarnOnceAValueHasCome)
 {
     LogLines log;

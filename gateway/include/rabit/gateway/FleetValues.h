@@ -33,8 +33,9 @@ namespace Rabit
 // Values of a node that is gone stay. Their age grows, and Gateway/Fleet has the state of the node
 // (Gateway::FindNode).
 //
-// If no node's value came within 5 s while another node is UP, a warning says so once, with the message that
-// was perhaps meant: without a `subscribe` entry of the gateway's configuration none ever comes.
+// If no node's value came within 5 s while another node is UP, a warning says so once, with the reason: the
+// problem that the gateway has with its `subscribe` entry, another class, or no such entry, with the message
+// that was perhaps meant.
 // Not thread-safe: for the manager's unit of work.
 template <typename T>
 class FleetValues
@@ -97,12 +98,16 @@ public:
     }
 
 private:
+    bool EndsRight(const std::string &name) const
+    {
+        return name.size() > _ending.size() &&
+               name.compare(name.size() - _ending.size(), _ending.size(), _ending) == 0;
+    }
     void Look()
     {
         for (const MessageInfo &info : _manager.GetWorkspace().GetListOfMessages())
         {
-            if (info.Type != typeid(T) || info.Name.size() <= _ending.size() ||
-                info.Name.compare(info.Name.size() - _ending.size(), _ending.size(), _ending) != 0)
+            if (info.Type != typeid(T) || !EndsRight(info.Name))
             {
                 continue;
             }
@@ -149,10 +154,27 @@ private:
         else if (++_looksInVain > LooksBeforeWarning)
         {
             _manager.WriteLog(RabitLogLevel::Warning, "other nodes are heard, and no `*" + _ending +
-                                                          "` of its class came in 5 s: a `subscribe` entry "
-                                                          "of the gateway's configuration brings it" +
-                                                          Hint());
+                                                          "` of its class came in 5 s: " + WhyNone());
         }
+    }
+    // Fleet has a problem of each `subscribe` entry by which nothing comes.
+    std::string WhyNone() const
+    {
+        for (const Gateway::Problem &problem : _fleet->problems)
+        {
+            if (problem.subject == "subscribe " + _ending.substr(1))
+            {
+                return problem.reason;
+            }
+        }
+        for (const MessageInfo &info : _manager.GetWorkspace().GetListOfMessages())
+        {
+            if (EndsRight(info.Name))
+            {
+                return "`" + info.Name + "` is of another class";
+            }
+        }
+        return "a `subscribe` entry of the gateway's configuration brings it" + Hint();
     }
     std::string Hint() const
     {
@@ -167,7 +189,8 @@ private:
         }
         std::sort(names.begin(), names.end());
         names.erase(std::unique(names.begin(), names.end()), names.end());
-        return names.empty() ? "" : NearestWordHint(_ending.substr(1), names);
+        const std::string hint = NearestWordHint(_ending.substr(1), names);
+        return hint.rfind("; did you mean", 0) == 0 ? hint : "";
     }
 
     RabitManager &_manager;
