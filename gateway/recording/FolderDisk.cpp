@@ -52,6 +52,11 @@ std::unique_ptr<RecordingDisk::File> FolderDisk::Create(const std::string &name,
 {
     std::error_code error;
     std::filesystem::create_directories(_folder, error);
+    if (error)
+    {
+        reason = "the folder " + _folder + " cannot be made: " + error.message();
+        return nullptr;
+    }
     const std::string path = _folder + "/" + name;
     const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640);
     if (descriptor < 0)

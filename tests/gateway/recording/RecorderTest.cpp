@@ -126,5 +126,18 @@ TEST(FolderDisk, MakesFilesThatOtherUsersCannotRead)
     std::filesystem::remove_all(folder);
 }
 
+// A folder below a file cannot be made by any user.
+TEST(FolderDisk, NamesAFolderThatItCannotMakeWithTheReason)
+{
+    const auto file =
+        std::filesystem::path(testing::TempDir()) / ("rabit_folder_file_" + std::to_string(::getpid()));
+    std::ofstream(file) << "x";
+    const std::string folder = (file / "deep").string();
+    std::string reason;
+    EXPECT_EQ(FolderDisk(folder).Create("a.mcap", reason), nullptr);
+    EXPECT_EQ(reason, "the folder " + folder + " cannot be made: Not a directory");
+    std::filesystem::remove(file);
+}
+
 }  // namespace
 }  // namespace Rabit
