@@ -155,7 +155,9 @@ class NoFalseLost(Expectation):
                     continue
                 lost += 1
                 began = time - LOOK_BACK_S
-                ended = any(life.ended is not None and began <= life.ended <= time for life in flight.lives_of(node))
+                # The incarnation that is LOST has ended, however long the observer took to tell.
+                ended = any(life.ended is not None and life.ended <= time
+                            and (began <= life.ended or life.incarnation == peer.incarnation) for life in flight.lives_of(node))
                 if ended or not flight.life_at(node, time) or flight.disturbed(began, time, node, observer.node) \
                         or flight.out_of_range(began, time, node, observer.node) \
                         or any(a <= time and b >= began for a, b in flight.pauses):

@@ -82,7 +82,7 @@ class Picture:
 
 
 def states(flight):
-    """A lane for each node: the worst state that others saw it in, and when its process ran."""
+    """A lane for each node: the states that the others saw it in, by their shares, and when its process ran."""
     names = list(flight.scenario.nodes)
     picture = Picture("How the others saw each node", flight, 60 + 26 * len(names) + 16)
     picture.bottom -= 16
@@ -90,8 +90,13 @@ def states(flight):
     for row, node in enumerate(names):
         y = picture.top + 26 * row + 3
         picture.text(LEFT - 8, y + 11, node, "end", INK, 12)
-        for begin, end, state in worst_states(flight, node):
-            picture.rect(begin, end, y, 12, STATES[state], f"{node} {state or 'not known'}, {begin:.1f} to {end:.1f} s")
+        for begin, end, seen in seen_states(flight, node):
+            top, observers = y, sum(count for _, count in seen)
+            for state, count in seen:
+                height = 12 * count / observers
+                picture.rect(begin, end, top, height, STATES[state],
+                             f"{node} {state or 'not known'} at {count}, {begin:.1f} to {end:.1f} s")
+                top += height
         for life in flight.lives_of(node):
             picture.rect(life.began, min(life.ended if life.ended is not None else flight.end, flight.end), y + 14, 4,
                          "#39424e", f"{node} runs, incarnation {life.number}")
@@ -105,8 +110,8 @@ def states(flight):
     return picture.svg()
 
 
-def worst_states(flight, node):
-    """[(from, to, state)]: LOST if any other node that is there has it so, else STALE, else UP, else nothing."""
+def seen_states(flight, node):
+    """[(from, to, [(state, number of the other nodes that are there and have it so)])], LOST last."""
     observers = flight.observers(node)
     times = {0.0, flight.end}
     for index, life in observers:
@@ -115,13 +120,13 @@ def worst_states(flight, node):
     spans = []
     ordered = sorted(times)
     for begin, end in zip(ordered, ordered[1:]):
-        seen = {peer.state for index, life in observers if life.is_there(begin)
-                for peer in [flight.peers[index, node].at(begin)] if peer}
-        state = next((state for state in ("LOST", "STALE", "UP") if state in seen), "")
-        if spans and spans[-1][2] == state:
-            spans[-1] = (spans[-1][0], end, state)
+        states_now = [peer.state for index, life in observers if life.is_there(begin)
+                      for peer in [flight.peers[index, node].at(begin)] if peer]
+        seen = [(state, states_now.count(state)) for state in ("UP", "STALE", "LOST") if state in states_now] or [("", 1)]
+        if spans and spans[-1][2] == seen:
+            spans[-1] = (spans[-1][0], end, seen)
         else:
-            spans.append((begin, end, state))
+            spans.append((begin, end, seen))
     return spans
 
 

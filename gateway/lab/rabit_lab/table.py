@@ -59,9 +59,17 @@ class Table:
     def summary(self, now):
         fleet = self._scenario.fleet()
         there = sum(self._flight.life_at(node, now) is not None for node in fleet)
-        lost = [node for node in fleet if self.seen(node, now).get("LOST")]
-        return (f"{there} of {len(fleet)} nodes run"
-                + (f"; LOST somewhere: {', '.join(lost)}" if lost else "") + self._channels())
+        # A node that is cut off has lost all others: they are not LOST for that.
+        lost, few = [], 0
+        for node in fleet:
+            counts = self.seen(node, now)
+            if 2 * counts.get("LOST", 0) > sum(counts.values()):
+                lost.append(node)
+            elif counts.get("LOST"):
+                few += 1
+        return (f"{there} of {len(fleet)} nodes run" + (f"; LOST: {', '.join(lost)}" if lost else "")
+                + (f"; {few} more at half of the others or fewer" if few and lost
+                   else f"; {few} LOST at half of the others or fewer" if few else "") + self._channels())
 
     def _channels(self):
         text = ""

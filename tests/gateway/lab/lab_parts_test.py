@@ -263,6 +263,13 @@ class ExpectationTest(InFolder):
         def killed(made):
             lost(made)
             made.flight.lives_of("uav1")[0].ended = 8.5
+
+        def told_late(made):
+            made.all_up(1)
+            made.flight.lives_of("uav1")[0].ended = 2.0
+            made.life("uav1", 11.5)
+            made.sees("ground", "uav1", 12.0, "LOST")
+        self.assertTrue(self.judge("no false lost", told_late).good)
         self.assertIn("ground lost uav1 at 12.0 s", self.judge("no false lost", lost).detail)
         self.assertFalse(self.judge("no false lost", lost_before_the_end).good)
         self.assertFalse(self.judge("no false lost", cut_long_before).good)
@@ -532,12 +539,20 @@ class ResultsTest(InFolder):
         self.assertIn("not met", text)
         self.assertNotIn("<script>alert", text)
 
-    def test_the_worst_state_that_any_node_saw_is_shown(self):
+    def test_the_states_that_the_others_saw_are_shown_by_their_shares(self):
         made = Made(self.read()).all_up(1)
         made.sees("ground", "uav1", 10, "LOST")
         made.sees("ground", "uav1", 12, "UP")
-        self.assertEqual(plots.worst_states(made.flight, "uav1"),
-                         [(0.0, 1, ""), (1, 10, "UP"), (10, 12, "LOST"), (12, 30.0, "UP")])
+        self.assertEqual(plots.seen_states(made.flight, "uav1"),
+                         [(0.0, 1, [("", 1)]), (1, 10, [("UP", 2)]), (10, 12, [("UP", 1), ("LOST", 1)]), (12, 30.0, [("UP", 2)])])
+
+    def test_a_node_is_lost_in_the_line_only_if_most_of_the_others_have_lost_it(self):
+        made = Made(self.read()).all_up(1)
+        for node in ("uav1", "uav2"):
+            made.sees("ground", node, 10, "LOST")
+            made.sees(node, "ground", 10, "LOST")
+        text = table.Table(made.flight.scenario, made.flight, io.StringIO()).summary(11)
+        self.assertEqual(text, "3 of 3 nodes run; LOST: ground; 2 more at half of the others or fewer")
 
     def test_a_new_scenario_names_the_nodes_of_a_folder_and_is_right(self):
         (self.folder / "station").write_text("", encoding="utf-8")
