@@ -1,6 +1,4 @@
 // rabit messages: all messages that nodes publish.
-#include <boost/algorithm/string/join.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -90,12 +88,12 @@ Subscribers SubscribersOf(const std::vector<Offers::Message> &messages, FleetSes
 
 std::string TextOf(const FleetExplorer::Subscribers &subscribers)
 {
-    std::vector<std::string> words = subscribers.Nodes;
-    if (subscribers.Others > 0)
+    if (subscribers.Others == 0)
     {
-        words.push_back("+" + std::to_string(subscribers.Others) + " no node");
+        return NamesText(subscribers.Nodes);
     }
-    return words.empty() ? "-" : boost::algorithm::join(words, " ");
+    return (subscribers.Nodes.empty() ? "" : NamesText(subscribers.Nodes) + " ") + "+" +
+           std::to_string(subscribers.Others) + " no node";
 }
 
 int Run(const Options &all, Wakeup &wakeup)
@@ -148,7 +146,7 @@ int Run(const Options &all, Wakeup &wakeup)
         {
             rows.back().push_back(NumberText(RateOf(message, rates), 2, " Hz"));
         }
-        rows.back().push_back(boost::algorithm::join(message.Publishers, " "));
+        rows.back().push_back(NamesText(message.Publishers));
         rows.back().push_back(TextOf(subscribers[message.Name]));
     }
     if (!options.Json && !Output::Lines(TableLines(rows)))

@@ -181,7 +181,7 @@ bool ShowTable(const Gateway::Fleet &fleet, const std::vector<FleetSession::Node
         }
     }
     bool good = Output::Lines(TableLines(rows));
-    for (const Gateway::Problem &problem : problems)
+    for (const Gateway::Problem &problem : Joined(problems))
     {
         good = good && Output::Line(SafeText("! " + problem.subject + ": " + problem.reason));
     }

@@ -32,6 +32,23 @@ std::vector<std::string> TableLines(const std::vector<std::vector<std::string>> 
     return lines;
 }
 
+std::string NamesText(const std::vector<std::string> &names)
+{
+    constexpr std::size_t most = 8;
+    constexpr std::size_t first = 6;
+    const std::size_t shown = names.size() > most ? first : names.size();
+    std::string text;
+    for (std::size_t i = 0; i < shown; ++i)
+    {
+        text += (i > 0 ? " " : "") + names[i];
+    }
+    if (shown < names.size())
+    {
+        text += " and " + std::to_string(names.size() - shown) + " more";
+    }
+    return text.empty() ? "-" : text;
+}
+
 std::string NumberText(double number, int digits, const char *unit)
 {
     char text[64];

@@ -25,6 +25,7 @@ MAKES = re.compile(r"[Pp]roblems\.(?:push_back|emplace_back)\(|Problem\{|Note\(\
 # Files that pass on problems of others, or make them of a name that another file gives.
 PASS_ON = {"gateway/report/ProblemLog.cpp", "gateway/presence/RecentProblems.cpp", "gateway/backfill/Mail.cpp",
            "gateway/lab/facts/FleetFacts.cpp", "gateway/foreign/ForeignTopics.cpp",
+           "gateway/tool/NodeProblems.cpp",
            "transport/common/SettingsCheck.cpp"}  # the last: a node does not start with them
 ROWS = re.compile(r"^\| `([a-z_]+)(?: [^`:]*)?: ", re.MULTILINE)
 

@@ -101,13 +101,12 @@ std::vector<Finding> OfNodes(const std::vector<FleetSession::Node> &nodes, const
                                 "wait longer (--wait)"});
         }
     }
-    for (const Gateway::Problem &problem : fleet.problems)
+    std::vector<Gateway::Problem> problems(fleet.problems.begin(), fleet.problems.end());
+    const std::vector<Gateway::Problem> ofNodes = ProblemsOfNodes(fleet);
+    problems.insert(problems.end(), ofNodes.begin(), ofNodes.end());
+    for (const Gateway::Problem &problem : Joined(problems))
     {
-        findings.push_back({Level::Problem, problem.subject, problem.reason, "docs/how_to/connect.md"});
-    }
-    for (const Gateway::Problem &problem : ProblemsOfNodes(fleet))
-    {
-        findings.push_back({Level::Problem, problem.subject, problem.reason, "docs/how_to/connect.md"});
+        findings.push_back({Level::Problem, problem.subject, problem.reason, "docs/what_rabit_tells_you.md"});
     }
     if (!up.empty())
     {

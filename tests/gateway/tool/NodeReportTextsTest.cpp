@@ -8,6 +8,7 @@
 #include "LogText.h"
 #include "NodeProblems.h"
 #include "RoundTrips.h"
+#include "Table.h"
 
 namespace Rabit::Tool
 {
@@ -38,8 +39,28 @@ TEST(NodeProblems, EachIsALineAndTheRestIsCounted)
     fleet.nodes[2].problems = 2;
     EXPECT_THAT(LinesOf(fleet), ElementsAre("node uav2: accept Q: there is none",
                                             "node uav2: publish Pose: it is of another type",
-                                            "node uav2: it has 1 more problem; see `rabit log uav2`",
-                                            "node uav3: it has 2 problems; see `rabit log uav3`"));
+                                            "node uav2: it has 1 more problem; see its log, by `rabit log`",
+                                            "node uav3: it has 2 problems; see its log, by `rabit log`"));
+}
+
+TEST(NodeProblems, OfOneReasonAreOneRowForPeople)
+{
+    std::vector<Gateway::Problem> problems;
+    for (int i = 1; i <= 40; ++i)
+    {
+        const std::string node = "uav" + std::to_string(i);
+        problems.push_back({"node " + node, node, "no ground"});
+        problems.push_back({"node " + node, node, "no ground"});
+    }
+    problems.push_back({"node uav1", "uav1", "no camera"});
+    problems.push_back({"subscribe Pose", "uav2", "no ground"});
+    std::vector<std::string> lines;
+    for (const Gateway::Problem &problem : Joined(problems))
+    {
+        lines.push_back(problem.subject + " (" + problem.node + "): " + problem.reason);
+    }
+    EXPECT_THAT(lines, ElementsAre("nodes uav1 uav2 uav3 uav4 uav5 uav6 and 34 more (): no ground",
+                                   "node uav1 (uav1): no camera", "subscribe Pose (uav2): no ground"));
 }
 
 TEST(NodeProblems, AreKnownOnceEachLiveNodeHasToldThem)
@@ -50,6 +71,13 @@ TEST(NodeProblems, AreKnownOnceEachLiveNodeHasToldThem)
     EXPECT_FALSE(AreProblemsKnown(nodes));
     nodes[1].State = Gateway::NodeState::LOST;
     EXPECT_TRUE(AreProblemsKnown(nodes));
+}
+
+TEST(NamesText, ShortensAListThatIsLongerThanALine)
+{
+    EXPECT_EQ(NamesText({}), "-");
+    EXPECT_EQ(NamesText({"a", "b", "c", "d", "e", "f", "g", "h"}), "a b c d e f g h");
+    EXPECT_EQ(NamesText({"a", "b", "c", "d", "e", "f", "g", "h", "i"}), "a b c d e f and 3 more");
 }
 
 TEST(LogText, IsTheNumberOfItsFirstLineAndPrintableLines)

@@ -122,7 +122,7 @@ def whoever_asks_again_and_again_is_answered(rabit):
 def the_problems_of_the_nodes_are_told_each_time(rabit):
     def missing(done):
         # The aircraft have no camera here.
-        return [node for node in ("uav1", "uav2") if not re.search(rf"^! node {node}: subscribe Targets", done.stdout, re.M)]
+        return [node for node in ("uav1", "uav2") if not re.search(rf"^! nodes?( uav\d)*? {node}( uav\d)*: subscribe Targets", done.stdout, re.M)]
     harness.until(lambda: not missing(rabit.run("nodes")))
     for number in range(1, 7):
         done = rabit.run("nodes", "--wait", "30")
