@@ -137,6 +137,15 @@ std::string WhyNobody(const Destination &to, const std::string &type, const Flee
            NearestWordHint(type, types);
 }
 
+// True if the message can name a queue for the receiver's answer (`reply_to`, as with RabitRequests), and
+// names none.
+bool AsksNoAnswer(const DynamicMessage &message)
+{
+    const Json value = Json::parse(message.ToJson(), nullptr, false);
+    const auto queue = value.find("reply_to");
+    return queue != value.end() && queue->is_string() && queue->get<std::string>().empty();
+}
+
 // Sends one message and waits for its outcome.
 class Sender
 {
@@ -175,6 +184,11 @@ public:
             Output::Talk("in doubt: " + reason);
             return Tell("in doubt", reason);
         }
+        if (receipt->Outcome() == QueueOutcome::Delivered && !_toldOfNoAnswer && AsksNoAnswer(*message))
+        {
+            _toldOfNoAnswer = true;
+            Output::Talk("`reply_to` is empty: the receiver tells nobody whether it does what it was sent");
+        }
         const std::string outcome = ToString(receipt->Outcome());
         return Tell(outcome, "") && receipt->Outcome() == QueueOutcome::Delivered;
     }
@@ -197,6 +211,7 @@ private:
     Wakeup &_wakeup;
     const std::shared_ptr<const DynamicType> _type;
     bool _isRead = true;
+    bool _toldOfNoAnswer = false;
 };
 
 int Run(const Options &options, Wakeup &wakeup)

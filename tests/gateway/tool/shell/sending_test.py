@@ -13,6 +13,9 @@ from two_aircraft import LIMIT, harness, keys, main
 
 def a_message_is_sent_and_its_outcome_is_the_exit_code(rabit):
     done = rabit.run("send", "uav1/MissionControl", "Uav::GoHome", "{}", "--wait", "60")
+    assert (done.returncode, done.stdout) == (0, "delivered\n"), done
+    assert done.stderr == "rabit: `reply_to` is empty: the receiver tells nobody whether it does what it was sent\n", done
+    done = rabit.run("send", "uav1/MissionControl", "Uav::GoHome", '{"reply_to": "ground/Commands"}', "--wait", "60")
     assert (done.returncode, done.stdout, done.stderr) == (0, "delivered\n", ""), done
     (row,), done = rabit.objects("send", "*/MissionControl", "Uav::GoHome", "{}", "--wait", "60")
     assert keys(row) == ["to", "type", "outcome", "reason"] and row["outcome"] == "delivered", row
@@ -24,6 +27,7 @@ def lines_of_standard_input_are_sent_each(rabit):
     outcomes = [json.loads(line)["outcome"] for line in done.stdout.splitlines()]
     assert outcomes == ["delivered", "refused", "delivered"], done
     assert done.returncode == 1 and "did you mean `id`?" in done.stderr, done
+    assert done.stderr.count("`reply_to` is empty") == 1, done
 
 
 def what_cannot_be_sent_is_told_with_the_nearest_right_word(rabit):
