@@ -39,11 +39,12 @@ const char *ManagerProgress::StepName() const noexcept
     return present ? NameOf(present->What) : nullptr;
 }
 
-void ManagerProgress::Failed(Step step, const std::string &text)
+void ManagerProgress::Failed(Step step, const std::string &text, std::chrono::nanoseconds now)
 {
     const std::lock_guard<std::mutex> lock(_mutex);
     _failedIn = step;
     _failure = text;
+    _failedAt = now;
 }
 
 void ManagerProgress::Recovered()
@@ -66,8 +67,9 @@ std::optional<ManagerTrouble> ManagerProgress::Trouble(const std::string &manage
             return ManagerTrouble{manager, NameOf(present->What), now - present->Since, ""};
         }
     }
+    const std::chrono::nanoseconds memory = std::max(FailureMemory, LongPeriods * wakeup.GetPeriod());
     const std::lock_guard<std::mutex> lock(_mutex);
-    if (!_failedIn)
+    if (!_failedIn || (*_failedIn == Step::UnitOfWork && now - _failedAt >= memory))
     {
         return std::nullopt;
     }

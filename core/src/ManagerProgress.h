@@ -29,6 +29,9 @@ public:
     static constexpr int LongPeriods = 2;
     // Startup and Shutdown may wait for hardware.
     static constexpr std::chrono::nanoseconds LongStartup = std::chrono::seconds(10);
+    // A unit of work that threw counts for this long, and for two periods: a manager that messages alone wake
+    // may have no later one.
+    static constexpr std::chrono::nanoseconds FailureMemory = std::chrono::seconds(10);
 
     // As the functions of RabitManager are named.
     static const char *NameOf(Step step) noexcept;
@@ -41,8 +44,8 @@ public:
     // The name of the present step; null between two steps.
     const char *StepName() const noexcept;
 
-    // An exception with that text has left the step.
-    void Failed(Step step, const std::string &text);
+    // An exception with that text has left the step, at that time.
+    void Failed(Step step, const std::string &text, std::chrono::nanoseconds now);
     // The last unit of work succeeded, the manager has ended well, or a new run begins.
     void Recovered();
 
@@ -68,6 +71,7 @@ private:
     mutable std::mutex _mutex;
     std::optional<Step> _failedIn;  // guarded by _mutex, like _failure
     std::string _failure;
+    std::chrono::nanoseconds _failedAt{0};
 };
 
 }  // namespace Rabit

@@ -352,7 +352,7 @@ bool RabitManager::Guard(RabitManagerTrace::Step step, std::chrono::nanoseconds 
             failure = CurrentExceptionText();
         }
     }
-    _progress->Failed(step, failure);
+    _progress->Failed(step, failure, _workspace.GetClock().Monotonic());
     ReportFailure(step, failure);
     return false;
 }

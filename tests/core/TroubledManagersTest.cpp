@@ -167,6 +167,34 @@ TEST(TroubledManagers, AManagerThatThrowsAtEachTurnIsSeenUntilATurnSucceeds)
     EXPECT_TRUE(fixture.Workspace.GetListOfTroubledManagers().empty());
 }
 
+TEST(TroubledManagers, AManagerThatThrewAndHasNoFurtherTurnIsForgottenAfterTenSeconds)
+{
+    const CapturedLog log;
+    SteppedFixture fixture;
+    fixture.Add("Other");
+    ScriptedManager &manager = fixture.Add("Manager");
+    manager.SetWakeupTimeDelaySec(3600);
+    manager.OnWork = [] { throw std::runtime_error("a message that it cannot read"); };
+    fixture.Reactor.Start();
+    fixture.RunFor(5s);
+    EXPECT_EQ(fixture.Workspace.GetListOfTroubledManagers().size(), 1u);
+    fixture.RunFor(6s);
+    EXPECT_TRUE(fixture.Workspace.GetListOfTroubledManagers().empty());
+}
+
+TEST(TroubledManagers, AManagerThatThrowsAtEachTurnOfALongPeriodIsSeenAllTheTime)
+{
+    const CapturedLog log;
+    SteppedFixture fixture;
+    fixture.Add("Other");
+    ScriptedManager &manager = fixture.Add("Manager");
+    manager.SetPeriodSec(20.0);
+    manager.OnWork = [] { throw std::runtime_error("no fix"); };
+    fixture.Reactor.Start();
+    fixture.RunFor(59s);
+    EXPECT_EQ(fixture.Workspace.GetListOfTroubledManagers().size(), 1u);
+}
+
 TEST(TroubledManagers, AManagerWhoseStartupThrewIsSeenUntilItRunsAgain)
 {
     const CapturedLog log;

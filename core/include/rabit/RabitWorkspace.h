@@ -221,7 +221,8 @@ public:
     // - a unit of work that has not returned for the longer of 1 s and two periods of its manager, unless the
     //   manager never sleeps, and so may block there;
     // - Startup or Shutdown that have not returned for 10 s;
-    // - a manager whose last unit of work, whose Startup or whose Shutdown threw.
+    // - a manager whose last unit of work threw, less than 10 s or two of its periods ago;
+    // - a manager whose Startup or Shutdown threw.
     // Time is that of the workspace's clock.
     std::vector<ManagerTrouble> GetListOfTroubledManagers() const;
 
