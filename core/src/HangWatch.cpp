@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 namespace Rabit
 {
@@ -56,9 +57,10 @@ void HangWatch::LookAtHang(Watched &watched, const std::string &name, const char
     if (hangsFor == std::chrono::nanoseconds::zero())
     {
         watched.NextHang = _patience;
+        watched.Hangs = false;
         return;
     }
-    if (hangsFor < std::max(_patience, watched.NextHang))
+    if (!std::exchange(watched.Hangs, true) || hangsFor < std::max(_patience, watched.NextHang))
     {
         return;
     }

@@ -9,7 +9,9 @@ namespace Rabit
 {
 
 // Logs the managers that were told to shut down and have not ended, and those that hang: once after
-// `patience`, and again each time the wait has doubled. For the one thread that waits for them.
+// `patience`, and again each time the wait has doubled. A hang is logged if two looks in a row see it: after
+// the process was stopped and goes on (SIGSTOP, SIGCONT), the first look sees a step that had no time to end.
+// For the one thread that waits for them.
 class HangWatch
 {
 public:
@@ -29,6 +31,7 @@ private:
         Clock::time_point Since{};
         std::chrono::nanoseconds NextReport{0};
         std::chrono::nanoseconds NextHang{0};
+        bool Hangs = false;  // as of the last look
     };
     void LookAtHang(Watched &watched, const std::string &name, const char *step,
                     std::chrono::nanoseconds hangsFor) const;
