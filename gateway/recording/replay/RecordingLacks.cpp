@@ -46,14 +46,15 @@ void RecordingLacks::Add(const Mcap::Contents &file)
     {
         _files[{Mcap::ValueOf(own, "node"), recording}].insert(*number);
     }
-    // Losses are counted since the beginning of a recording.
+    const bool isMerged = !MetadataOf(file, "rabit.merge").empty();
+    const std::string recorder = isMerged ? "" : Mcap::ValueOf(MetadataOf(file, "rabit.node"), "node");
+    // Losses are counted since the beginning of a recording. Those in a merged file are sums of all
+    // recorders.
     for (const auto &[topic, count] : MetadataOf(file, "rabit.losses"))
     {
-        std::uint64_t &known = _losses[{recording, topic}];
+        std::uint64_t &known = _losses[{recorder, recording, topic}];
         known = std::max(known, NumberIn<std::uint64_t>(count).value_or(0));
     }
-    const bool isMerged = !MetadataOf(file, "rabit.merge").empty();
-    const std::string recorder = Mcap::ValueOf(MetadataOf(file, "rabit.node"), "node");
     for (const Mcap::Metadata &metadata : file.MetadataRecords)
     {
         if (metadata.Name != "rabit.not_recorded")
@@ -76,7 +77,10 @@ std::vector<std::string> RecordingLacks::Messages() const
     std::vector<std::string> lines;
     for (const auto &[of, count] : _losses)
     {
-        lines.push_back(of.second + ": " + std::to_string(count) + " messages were not recorded");
+        const auto &[recorder, recording, topic] = of;
+        const std::string messages = std::to_string(count) + " messages";
+        lines.push_back(recorder.empty() ? topic + ": " + messages + " were not recorded"
+                                         : recorder + " did not record " + messages + " of " + topic);
     }
     for (const auto &[why, names] : _notRecorded)
     {

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -24,7 +25,8 @@ public:
     std::vector<std::string> Files() const;
 
 private:
-    std::map<std::pair<std::string, std::string>, std::uint64_t> _losses;  // by recording and topic
+    // By recorder, which is empty for a merged file, recording and topic.
+    std::map<std::tuple<std::string, std::string, std::string>, std::uint64_t> _losses;
     std::map<std::pair<std::string, std::string>, std::set<std::string>> _notRecorded;  // by node and reason
     std::map<std::pair<std::string, std::string>, std::set<std::uint64_t>> _files;  // by node and recording
 };

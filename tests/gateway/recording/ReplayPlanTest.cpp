@@ -5,6 +5,7 @@
 
 #include <deque>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "PlayedFile.h"
@@ -182,6 +183,16 @@ TEST_F(ReplayPlanTest, MessagesThatAnOwnRecordingLacksAndAnotherHasAreTold)
     EXPECT_THAT(Plan({.Exclude = {"*/*"}}).Lacks, IsEmpty()) << "neither is played";
 }
 
+TEST_F(ReplayPlanTest, LossesOfTwoRecordersAreToldApart)
+{
+    for (const auto &[node, lost] : {std::pair("ground", "3"), std::pair("uav1", "4")})
+    {
+        AddFile(node).AddMetadata("rabit.losses", {{"uav1/Pose", lost}});
+    }
+    EXPECT_THAT(Plan().Lacks, ElementsAre("ground did not record 3 messages of uav1/Pose",
+                                          "uav1 did not record 4 messages of uav1/Pose"));
+}
+
 TEST_F(ReplayPlanTest, WhatAFileSaysThatItLacksIsToldOnce)
 {
     for (const char *lost : {"4", "7"})
@@ -194,7 +205,7 @@ TEST_F(ReplayPlanTest, WhatAFileSaysThatItLacksIsToldOnce)
         file.Channel("uav1/Json", {}, "x", "json");
     }
     EXPECT_THAT(Plan().Lacks,
-                ElementsAre("uav1/Pose: 7 messages were not recorded",
+                ElementsAre("uav1 did not record 7 messages of uav1/Pose",
                             "uav1 did not record queue messages: `record: queues` is off",
                             "uav1 did not record Other, Plain: its type was not made from IDL",
                             "without CDR and the IDL of their types, and not played: `uav1/Json`"));
