@@ -19,8 +19,8 @@ std::vector<Gateway::LinkStatus> Outbound(const LinkNode &links)
             row.expired = counters.Expired;
             row.in_doubt = counters.InDoubt;
             row.undeliverable = counters.RefusedThere;
-            row.refused_full =
-                counters.RefusedFullByCount + counters.RefusedFullByBytes + counters.RefusedTooLarge;
+            // A message that no outbox would take is counted as refused_type, with its problem.
+            row.refused_full = counters.RefusedFullByCount + counters.RefusedFullByBytes;
             row.resent = counters.PartsResent;
             row.bytes = counters.BytesSent;
         });

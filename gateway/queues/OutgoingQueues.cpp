@@ -176,6 +176,10 @@ bool OutgoingQueues::ForwardTo(const std::string &node, const std::string &queue
     {
         const std::string reason(ToString(refusal));
         TellRefused(node, queue, type, payload, reason);
+        if (refusal == LinkRefusal::TooLarge)
+        {
+            return Refuse(node, queue, QueueAcceptance::WrongType, "the message is " + reason, receipt);
+        }
         return RefuseAtCall(receipt, reason);  // counted by the link
     }
     _refusals.Forgive(node, queue);

@@ -1,5 +1,6 @@
 // Queue messages between nodes: whole nodes on the simulated network. The link protocol has tests of its own.
 #include <gmock/gmock.h>
+#include <rabit/RabitQueueReceipt.h>
 #include <rabit/dynamic/DynamicMessage.h>
 #include <rabit/dynamic/DynamicType.h>
 
@@ -250,6 +251,25 @@ TEST_F(QueueTest, AFullOutboxRefusesAtOnceAndCounts)
     fleet.RunFor(1500ms);
     EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").refused_full, 1u);
     EXPECT_EQ(ground.LinkTo("uav1", "MissionControl").accepted, 1000u);
+}
+
+TEST_F(QueueTest, AMessageThatIsLargerThanTheOutboxDoesNotCountAsOneThatFoundItFull)
+{
+    GatewayConfig config = GroundConfig();
+    config.Node = "station";
+    config.Send = {SendRule{}};
+    config.Send[0].CapacityBytes = 8;
+    SimulatedNode &station = fleet.Add(config);
+    fleet.RunFor(2s);
+    const auto receipt = std::make_shared<RabitQueueReceipt>();
+    EXPECT_FALSE(
+        station.Workspace.AddMessageToQueue("uav1/MissionControl", std::make_shared<Uav::Goto>(), receipt));
+    EXPECT_EQ(receipt->RefusalReason(), "the message is larger than the outbox");
+    fleet.RunFor(1500ms);
+    EXPECT_EQ(station.LinkTo("uav1", "MissionControl").refused_full, 0u);
+    EXPECT_EQ(station.LinkTo("uav1", "MissionControl").refused_type, 1u);
+    EXPECT_THAT(station.Problems(),
+                HasSubstr("send uav1/MissionControl: the message is larger than the outbox"));
 }
 
 TEST_F(QueueTest, AnUnknownNodeIsRefusedAndNamed)
