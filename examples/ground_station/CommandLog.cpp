@@ -160,6 +160,25 @@ void CommandLog::StartedAnew(const std::string &node, double lastHeardS, double 
             Advance(command, CommandProgress::PROGRESS_REPLACED, "the aircraft has started anew", nowS);
 }
 
+// A command is in doubt since the new life of its aircraft was heard, so a state that was posted later is of
+// that life.
+void CommandLog::Reported(const std::string &node, std::uint32_t lastCommand, double postedS, double nowS)
+{
+    for (CommandStatus &command : _commands)
+    {
+        if (command.node != node || command.progress != CommandProgress::PROGRESS_IN_DOUBT ||
+            postedS <= command.changed_s)
+            continue;
+        if (command.id == lastCommand)
+        {
+            Advance(command, CommandProgress::PROGRESS_ACCEPTED, "", nowS);
+            ++_tallies[node].Acknowledged;
+        }
+        else
+            Advance(command, CommandProgress::PROGRESS_REPLACED, "the aircraft has started anew", nowS);
+    }
+}
+
 // The reason of the answer, with ids of commands replaced by their numbers.
 std::string CommandLog::ReasonOf(const Uav::CommandAck &answer) const
 {

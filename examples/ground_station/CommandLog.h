@@ -51,6 +51,11 @@ public:
     // Notes an answer of an aircraft.
     Answer Answered(const Uav::CommandAck &answer, double nowS);
 
+    // Notes a MissionState that the aircraft posted at `postedS`, with the id of the last command that it
+    // obeyed. That ends the doubt about commands: the aircraft obeys the command, or has started anew without
+    // it.
+    void Reported(const std::string &node, std::uint32_t lastCommand, double postedS, double nowS);
+
     // The id of the command of number 1.
     std::uint32_t FirstId() const { return _firstId; }
     // The aircraft has restarted since it was last heard: it has forgotten the commands that it had

@@ -40,7 +40,7 @@ void Commander::ExecuteUnitOfWork()
     FollowReceipts();
     TakeMessages();
     LookAtAreas(elapsed);
-    FollowAreas();
+    FollowMissionStates();
     if (IsTurn() && !IsQuiet(elapsed))
         CommandBySettings(elapsed);
     PostIfChanged();
@@ -121,7 +121,7 @@ void Commander::LookAtAreas(std::chrono::nanoseconds elapsed)
 }
 
 // Replays are no aircraft, and report an area of the past.
-void Commander::FollowAreas()
+void Commander::FollowMissionStates()
 {
     std::vector<AreaReport> reports;
     for (auto &[node, aircraft] : _aircraft)
@@ -132,8 +132,10 @@ void Commander::FollowAreas()
         if (!aircraft.State->WasPosted())
             continue;
         const bool isLost = StateOf(*_fleet, 0, node) == RowState::Lost;
-        reports.push_back({node, isLost, aircraft.State->search_area, aircraft.State->area_declined,
-                           _elapsedS - aircraft.State->GetAgeSeconds()});
+        const double postedS = _elapsedS - aircraft.State->GetAgeSeconds();
+        reports.push_back(
+            {node, isLost, aircraft.State->search_area, aircraft.State->area_declined, postedS});
+        _log.Reported(node, aircraft.State->last_command, postedS, _elapsedS);
     }
     _areaLog.Look(reports);
 }

@@ -113,7 +113,7 @@ private:
     void Obey(const Order &order);
     void Take(Uav::SearchArea area);
     void LookAtAreas(std::chrono::nanoseconds elapsed);
-    void FollowAreas();
+    void FollowMissionStates();
     // True if the first area has not reached that aircraft yet, which would decline to search.
     bool MayLackArea(const Aircraft &aircraft, std::chrono::nanoseconds elapsed) const;
     void CommandBySettings(std::chrono::nanoseconds elapsed);

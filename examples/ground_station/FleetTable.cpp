@@ -143,7 +143,7 @@ std::string WhatIsMissing(const FleetRow &row)
     const bool poses = *row.AgeS <= FleetRow::FreshS;
     if (beats == poses)
         return "";
-    return beats ? "poses missing, beats arriving" : "beats missing, poses arriving";
+    return beats ? "no position comes" : "only its positions come";
 }
 
 std::string Printable(const std::string &text, std::size_t longest)

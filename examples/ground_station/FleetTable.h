@@ -80,8 +80,8 @@ std::vector<TableLine> FleetTableLines(const std::vector<FleetRow> &rows, double
 // One self-contained line for each row, for a log: time, then the same columns as in the table, named.
 std::vector<std::string> FleetLogLines(const std::vector<FleetRow> &rows, double elapsedS);
 
-// Tells which data of an aircraft is missing while other data arrives: `beats missing, poses arriving`;
-// empty if all is heard, or nothing. An aircraft is UP while its gateway's beats come.
+// Tells which data of an aircraft is missing while it is heard otherwise: `only its positions come`; empty if
+// all is heard, or nothing. An aircraft is UP while its gateway's beats come.
 std::string WhatIsMissing(const FleetRow &row);
 
 // Limits of texts in a line, in characters: names of nodes, queues and messages, and reasons.

@@ -89,7 +89,7 @@ TEST_F(AttentionLines, TellThatACommandMayNotHaveArrived)
 TEST_F(AttentionLines, TellWhatIsMissing)
 {
     _rows[0].State = Ground::RowState::Stale;
-    EXPECT_THAT(Lines(), ElementsAre("uav1: beats missing, poses arriving"));
+    EXPECT_THAT(Lines(), ElementsAre("uav1: only its positions come"));
 }
 
 TEST_F(AttentionLines, TellWhoIsBackWithoutOrders)

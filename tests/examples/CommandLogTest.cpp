@@ -251,6 +251,37 @@ TEST(CommandLog, ACommandInDoubtIsOutstandingUntilTheAircraftAnswers)
     EXPECT_TRUE(log.Outstanding().empty());
 }
 
+TEST(CommandLog, TheStateOfTheAircraftEndsTheDoubt)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.Sent(To("uav1"), 1);
+    log.Sent(To("uav2"), 1);
+    for (std::uint32_t id = 1; id <= 3; ++id)
+    {
+        log.OnWay(id, QueueOutcome::InDoubt, 5);
+    }
+    log.Reported("uav1", 2, 5, 6);
+    EXPECT_EQ(log.Outstanding().size(), 3u) << "it may be a state of the former life";
+    log.Reported("uav1", 2, 5.5, 6);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_REPLACED);
+    EXPECT_EQ(log.Commands()[0].reason, "the aircraft has started anew");
+    EXPECT_EQ(log.Commands()[1].progress, CommandProgress::PROGRESS_ACCEPTED);
+    EXPECT_EQ(log.Of("uav1").Acknowledged, 1u);
+    EXPECT_EQ(log.Commands()[2].progress, CommandProgress::PROGRESS_IN_DOUBT) << "of another aircraft";
+    log.Answered(Ack(2, "uav1", CommandStage::COMMAND_DONE), 7);
+    EXPECT_EQ(log.Commands()[1].progress, CommandProgress::PROGRESS_DONE);
+    EXPECT_EQ(log.Of("uav1").Acknowledged, 1u);
+}
+
+TEST(CommandLog, TheStateOfTheAircraftChangesNoCommandThatIsNotInDoubt)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.Reported("uav1", 0, 5, 6);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_SENT);
+}
+
 TEST(CommandLog, ShowsACommandThatWasNeverSent)
 {
     CommandLog log;

@@ -110,9 +110,9 @@ TEST(FleetTable, MarksALowBatteryAndPutsItBeforeWhatIsWell)
 TEST(FleetTable, SaysWhatIsMissing)
 {
     EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Up, 0.08)), "");
-    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Stale, 0.08)), "beats missing, poses arriving");
-    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Lost, 0.08)), "beats missing, poses arriving");
-    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Up, 4)), "poses missing, beats arriving");
+    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Stale, 0.08)), "only its positions come");
+    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Lost, 0.08)), "only its positions come");
+    EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Up, 4)), "no position comes");
     EXPECT_EQ(Ground::WhatIsMissing(WithState(RowState::Lost, 4)), "") << "nothing arrives";
     FleetRow silent = Fresh();
     silent.AgeS.reset();

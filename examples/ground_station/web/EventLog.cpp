@@ -105,8 +105,9 @@ void EventLog::LookAtAircraft(const AircraftData &aircraft)
         if (known.WantsHome)
             known.HomeReason = aircraft.Health.Content->reason;
         Add(known.WantsHome ? Weight::Warning : Weight::Info, aircraft.Node,
-            WithReason(known.WantsHome ? "goes home by itself" : "need not be at home any more; this is over",
-                       known.HomeReason));
+            WithReason(
+                known.WantsHome ? "goes home by itself" : "no longer flies home by itself; this is over",
+                known.HomeReason));
     }
 }
 

@@ -239,8 +239,9 @@ TEST_F(EventLog, TellsWhyAnAircraftNeedNotBeAtHomeAnyMore)
     EXPECT_THAT(New(), ElementsAre("uav1|goes home by itself: the ground station is silent"));
     _health.wants_home = false;
     _health.reason = "";
-    EXPECT_THAT(New(),
-                ElementsAre("uav1|need not be at home any more; this is over: the ground station is silent"));
+    EXPECT_THAT(
+        New(),
+        ElementsAre("uav1|no longer flies home by itself; this is over: the ground station is silent"));
 }
 
 TEST_F(EventLog, TellsThatASearchHasBegunAndNotThatItIsDone)

@@ -75,13 +75,13 @@ export class FleetTable {
     // Where one thing is there and another is not, state and age would seem to contradict each other.
     const missing = model.missing(aircraft);
     setAttribute(cells[1], 'title', missing);
-    const special = /^bad position/.test(missing) ? 'bad position' : /arriving/.test(missing) ? missing : aircraft.without_orders ? 'back without orders' : '';
+    const special = /^bad position/.test(missing) ? 'bad position' : /positions? comes?$/.test(missing) ? missing : aircraft.without_orders ? 'back without orders' : '';
     setText(why, [aircraft.replay ? 'replay' : '', special].filter((one) => one).join(' · '));
     setText(cells[2], pose ? `${fresh ? '' : '! '}${ageText(model.age(pose.age_s))}` : '–');
     mark(cells[2], 'age number', fresh);
     setText(cells[3], isNumber(aircraft.round_trip_s) ? fixed(aircraft.round_trip_s * 1000, 1) : '–');
     mark(cells[3], 'rtt number', state === 'up');
-    setText(cells[4], isNumber(aircraft.delivery_rate) ? kilo(aircraft.delivery_rate) : '–');
+    setText(cells[4], aircraft.delivery_rate > 0 ? kilo(aircraft.delivery_rate) : '–');
     mark(cells[4], 'delivery number', state === 'up');
     const level = batteryLevel(health?.battery_percent);
     setText(cells[5], health ? BATTERY_SIGNS[level] + fixed(health.battery_percent, 0) : '–');

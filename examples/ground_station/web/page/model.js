@@ -155,8 +155,9 @@ export class Model {
     if (beats && aircraft.bad_position) return `bad position: ${aircraft.bad_position}`;
     const poses = this.age(aircraft.pose?.age_s) <= POSE_FRESH_S;
     if (beats && poses) return '';
-    if (beats) return aircraft.pose ? 'poses missing, beats arriving' : 'no pose has come yet';
-    return poses ? 'beats missing, poses arriving' : 'beats and poses missing';
+    // Beats count for some time after the last one, so this does not say that it is heard.
+    if (beats) return aircraft.pose ? 'no position comes' : 'no position has come yet';
+    return poses ? 'only its positions come' : 'nothing comes from it';
   }
   // As on the map and in its sign: an aircraft that is UP but whose pose is old is shown as STALE there.
   shownState(aircraft) {

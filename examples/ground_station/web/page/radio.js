@@ -12,6 +12,7 @@ function bytesPerSecond(value) {
 export function kilo(value) {
   if (!isNumber(value)) return '–';
   const number = value / 1e3;
+  if (number > 0 && number < 0.005) return '<0.01';
   return number > 99999 ? '>99999' : fixed(number, number < 9.995 ? 2 : number < 99.95 ? 1 : 0);
 }
 const perSecond = (value) => `${isNumber(value) && value > 99999 ? '>99999' : fixed(value, value < 99.95 ? 1 : 0)}/s`;

@@ -26,7 +26,7 @@ async function saysWhatIsMissing(programs) {
   const {page} = fleet;
   await fleet.rowBecomes('uav1', (row) => /UP/.test(row.state) && !row.old, 'is UP');
   fixture.tell('beatless uav1');
-  const row = await fleet.rowBecomes('uav1', (one) => /STALE/.test(one.state) && /beats missing, poses arriving/.test(one.mission), 'says what is missing');
+  const row = await fleet.rowBecomes('uav1', (one) => /STALE/.test(one.state) && /only its positions come/.test(one.mission), 'says what is missing');
   assert.ok(row.age < 5, 'its poses arrive');
   await fleet.select('uav2');
   await page.keyboard.press('h');
