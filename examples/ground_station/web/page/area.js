@@ -151,12 +151,17 @@ export class SearchAreaEditor {
   // What was typed becomes the draft when all of it is good; it is checked again when it is sent.
   takeFields() {
     const values = {};
-    for (const {input, name, low, high} of this.fields) {
+    let wrong = '';
+    for (const {input, name, low, high, what} of this.fields) {
       const value = Number(input.value);
       const good = input.value.trim() !== '' && value >= low && value <= high;
       input.setAttribute('aria-invalid', String(!good));
-      if (!good) return;
+      if (!good && !wrong) wrong = `${what} must be a number from ${low} to ${high}`;
       values[name] = value;
+    }
+    if (wrong) {
+      setText(byId('area-error'), `${wrong}; the map shows the area as it was before`);
+      return;
     }
     this.draft = values;
     this.redraw();

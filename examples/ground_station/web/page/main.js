@@ -8,6 +8,7 @@ import {Orders} from './orders.js';
 import {SearchAreaEditor} from './area.js';
 import {CommandList, EventList, Pictures, ProblemList, TargetList} from './lists.js';
 import {RadioPanel} from './radio.js';
+import {Alarms} from './alarms.js';
 import {listenForKeys} from './keys.js';
 import {ageWithUnit, STATES} from './format.js';
 import {byId, element, keepList, setClass, setText} from './dom.js';
@@ -54,7 +55,7 @@ const table = new FleetTable(model, {
 });
 const orders = new Orders(model, connection, map, say);
 const area = new SearchAreaEditor(model, connection, map, say);
-const lists = [new CommandList(model), new TargetList(model), new RadioPanel(model), new ProblemList(model), new EventList(model, say), new Pictures(model, (node) => select(node))];
+const lists = [new Alarms(model, say), new CommandList(model), new TargetList(model), new RadioPanel(model), new ProblemList(model), new EventList(model, say), new Pictures(model, (node) => select(node))];
 
 // What handling takes, for the line at the top: snapshots since the last look, and the longest one.
 const measured = {since: performance.now(), received: 0, skipped: 0, longestMs: 0, text: ''};

@@ -99,6 +99,45 @@ async function marksALowBattery(programs) {
   assert.deepEqual(fleet.errors, []);
 }
 
+// Apart from the problems, with a sign, in the title of the tab, and with a sound if that is wanted.
+async function raisesAlarmsInTheOperatorsWords(programs) {
+  const {fixture, url} = await startFixture(programs, 3);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  for (const node of ['uav1', 'uav2', 'uav3']) await fleet.rowBecomes(node, (row) => /UP/.test(row.state), 'is UP');
+  await becomes(() => page.isHidden('#alarms-panel'), async () => `there is none: ${await fleet.text('#alarms')}`);
+  assert.equal(await page.title(), 'Rabit ground station');
+  fixture.tell('battery uav2 9');
+  fixture.tell('lost uav1');
+  await becomes(async () => /uav1is LOST: it has not been heard for .*uav2battery 9 %: it has to land soon$/.test(await fleet.text('#alarms')),
+    async () => `both are told, the worst first: ${await fleet.text('#alarms')}`);
+  assert.equal(await fleet.text('#alarms-title'), '■ 2 alarms');
+  assert.equal(await page.title(), '■ 2 alarms · Rabit ground station');
+  assert.equal(await fleet.text('#sound'), 'Sound off');
+  await page.click('#sound');
+  assert.equal(await fleet.text('#sound'), 'Sound on');
+  await page.click('#sound');
+  assert.equal(await fleet.text('#sound'), 'Sound off');
+  fixture.tell('up uav1');
+  await becomes(async () => (await page.title()).startsWith('■ 1 alarm · '), async () => `one is over: ${await page.title()}`);
+  assert.deepEqual(fleet.errors, []);
+}
+
+async function saysWhichNumberOfTheSearchAreaIsWrong(programs) {
+  const {url} = await startFixture(programs, 1);
+  await openBrowser();
+  const fleet = await FleetPage.open(url);
+  const {page} = fleet;
+  await page.keyboard.press('a');
+  await page.fill('#area-latitude_deg', '91');
+  await becomes(async () => /^The latitude must be a number from -90 to 90/.test(await fleet.text('#area-error')),
+    async () => `it says so: ${await fleet.text('#area-error')}`);
+  await page.fill('#area-latitude_deg', '47.4');
+  await becomes(async () => (await fleet.text('#area-error')) === '', 'it is right again');
+  assert.deepEqual(fleet.errors, []);
+}
+
 // An area that all aircraft decline is not in force, whatever was sent.
 async function tellsHowManyFlyTheSearchArea(programs) {
   const {fixture, url} = await startFixture(programs, 3);
@@ -159,6 +198,8 @@ async function cutsNoButtonInTheTable(programs) {
 }
 
 export const cases = {
+  raises_alarms_in_the_operators_words: raisesAlarmsInTheOperatorsWords,
+  says_which_number_of_the_search_area_is_wrong: saysWhichNumberOfTheSearchAreaIsWrong,
   cuts_no_button_in_the_table: cutsNoButtonInTheTable,
   puts_a_replay_that_is_over_last: putsAReplayThatIsOverLast,
   forgets_a_lost_aircraft_until_it_is_heard_again: forgetsALostAircraftUntilItIsHeardAgain,
