@@ -12,7 +12,19 @@ const PeerTable::Peer *PeersOverPaths::Find(const std::string &node) const
     {
         found = _tables[path]->Find(node);
     }
-    return found;
+    if (found == nullptr || found->State != Gateway::NodeState::LOST || found->Reason == PeerTable::Left)
+    {
+        return found;
+    }
+    // A goodbye that was lost on one path came by another.
+    const auto hasLeft = [&node, found](const PeerTable *table)
+    {
+        const PeerTable::Peer *const peer = table->Find(node);
+        return peer != nullptr && peer->Incarnation == found->Incarnation &&
+               peer->State == Gateway::NodeState::LOST && peer->Reason == PeerTable::Left;
+    };
+    const auto table = std::find_if(_tables.begin(), _tables.end(), hasLeft);
+    return table == _tables.end() ? found : (*table)->Find(node);
 }
 
 std::vector<const PeerTable::Peer *> PeersOverPaths::Heard() const
