@@ -83,7 +83,7 @@ std::vector<std::string> WordsOf(const char *command, const Options &options)
 }
 
 // Of `rabit lab replay`: the name, the word for its value, and the text.
-constexpr std::array<std::array<const char *, 3>, 10> RadioOptions = {{
+constexpr std::array<std::array<const char *, 3>, 11> RadioOptions = {{
     {"--radio", "RATE", "Rate of the channel, which all share, as 57.6kbit/s (default: unlimited)"},
     {"--loss", "SHARE", "Share of the datagrams that each receiver loses, as 10% (default: 0%)"},
     {"--burst", "NUMBER", "Datagrams that are lost in a row, on average (default: 1)"},
@@ -93,6 +93,7 @@ constexpr std::array<std::array<const char *, 3>, 10> RadioOptions = {{
     {"--overhead", "SIZE", "Bytes that each frame takes in addition (default: 0B)"},
     {"--budget", "RATE", "Budget of each node, as 1500B/s, or auto (default: as each node was configured)"},
     {"--after", "TIME", "Time from which values are counted (default: 0s)"},
+    {"--before", "TIME", "Time up to which values are counted (default: the end of the flight)"},
     {"--seed", "NUMBER", "Start of the random numbers, a whole number (default: 1)"},
 }};
 

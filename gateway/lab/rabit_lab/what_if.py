@@ -26,7 +26,7 @@ class Option:
 
 LONGEST_DELAY = 3600  # seconds
 NOT_FLOWN = ("Cuts, losses and freezes of the recorded flight are not repeated. Nodes end and begin when they did, and post what they "
-             "posted.")
+             "posted. --after and --before leave times out of the figures.")
 
 OPTIONS = [
     Option("radio", "RATE", "rate of the channel, which all share, as 57.6kbit/s; default: unlimited", units.bits_per_second, "unlimited"),
@@ -39,6 +39,7 @@ OPTIONS = [
     Option("budget", "RATE", "budget of each node, as 1500B/s, or auto; default: those of the recorded configurations",
            units.bytes_per_second),
     Option("after", "TIME", "time from which values are counted; default: 0s", units.length, "0s"),
+    Option("before", "TIME", "time up to which values are counted; default: the end of the flight", units.length),
     Option("seed", "NUMBER", "start of the random numbers, a whole number; default: 1", units.seed, "1"),
 ]
 
@@ -56,6 +57,12 @@ class Radio:
     budget: typing.Optional[float]
     after: float
     seed: int
+    before: typing.Optional[float] = None  # the end of the flight
+
+    @property
+    def span(self):
+        """(from, to): the time of which values are counted."""
+        return self.after, flights.FOREVER if self.before is None else self.before
 
     @staticmethod
     def of(options):
@@ -118,6 +125,8 @@ def read(name, facts, radio):
     end = facts[0]["end"] / 1e9
     if radio.after > 0 and radio.after >= end:
         raise ScenarioError("--after", f"{radio.after:g} s is not before the end of the flight at {end:.1f} s; name an earlier time")
+    if radio.before is not None and radio.before <= radio.after:
+        raise ScenarioError("--before", f"{radio.before:g} s is not behind the {radio.after:g} s of --after; name a later time")
     nodes = sorted({fact["node"] for fact in facts if fact["fact"] == "life"})
     channel = scenarios.Network("radio", nodes, rate=radio.radio, queue=radio.queue)
     made = scenarios.Scenario(pathlib.Path(name), pathlib.Path("."),
@@ -188,41 +197,43 @@ def streams(flown):
             for index, origin, message in flight.values if flight.lives[index].node != origin}
 
 
-def left_out(flown, origin, message, after):
+def left_out(flown, origin, message, after, end):
     """The share of the posts from that time on that never went out, since a newer one came first."""
     offered = replaced = 0
     for index, life in enumerate(flown.simulated.lives):
         counts = flown.simulated.published.get((index, message), []) if life.node == origin else []
         before = [count for count in counts if count[0] <= after] or [(0, 0, 0)]
-        if counts:
-            offered += counts[-1][1] - before[-1][1]
-            replaced += counts[-1][2] - before[-1][2]
+        counted = [count for count in counts if count[0] <= end]
+        if counted:
+            offered += counted[-1][1] - before[-1][1]
+            replaced += counted[-1][2] - before[-1][2]
     return replaced / offered if offered else 0
 
 
-def row(flown, message, chosen, after):
+def row(flown, message, chosen, after, before):
     """The figures of some streams of one message."""
     simulated, recorded = flown.simulated, flown.recorded
+    end = min(before, simulated.end)
     mine, theirs, oldest = [], [], []
     out, posts, due, arrived, delays = {}, {}, 0, 0, []
     for observer, origin, _ in sorted(chosen):
         posted = sorted(at for index, life in enumerate(simulated.lives) if life.node == origin
                         for _, at in simulated.values.get((index, origin, message), []))
-        sent_share = 1 - left_out(flown, origin, message, after)
-        posts[origin] = sum(at >= after for at in posted)
+        sent_share = 1 - left_out(flown, origin, message, after, before)
+        posts[origin] = sum(after <= at < before for at in posted)
         out[origin] = round(posts[origin] * sent_share)
         since = posted[0] if posted else 0.0
-        found = simulated.ages(observer, origin, message, max(after, since), simulated.end, since)
+        found = simulated.ages(observer, origin, message, max(after, since), end, since)
         mine += found
         oldest += [(*flights.oldest(found), f"{origin} at {observer}")] if found else []
         if any(recorded.values.get((index, origin, message)) for index in lives_of(recorded, observer)):
-            theirs += recorded.ages(observer, origin, message, max(after, since), simulated.end, since)
+            theirs += recorded.ages(observer, origin, message, max(after, since), end, since)
         there = [simulated.lives[index] for index in lives_of(simulated, observer)]
-        wanted = round(sent_share * sum(at >= after and any(life.is_there(at) for life in there) for at in posted))
+        wanted = round(sent_share * sum(after <= at < before and any(life.is_there(at) for life in there) for at in posted))
         due += wanted
         came = [at - sent for index in lives_of(simulated, observer)
                 for at, sent in simulated.values.get((index, origin, message), [])
-                if sent >= after and simulated.lives[index].is_there(sent)]
+                if after <= sent < before and simulated.lives[index].is_there(sent)]
         arrived += min(len(came), wanted)  # a State comes again after an outage
         delays += came
     worst, at, where = max(oldest, default=(None, None, "-"))
@@ -242,13 +253,13 @@ def quantile(values, part):
     return ordered[min(int(part * len(ordered)), len(ordered) - 1)] if ordered else None
 
 
-def rows(flown, after):
+def rows(flown, after, before=flights.FOREVER):
     """(one for each message, one for each stream)"""
     by_message = collections.defaultdict(set)
     for stream in streams(flown):
         by_message[stream[2]].add(stream)
-    return ([row(flown, message, chosen, after) for message, chosen in sorted(by_message.items())],
-            [(stream, row(flown, message, {stream}, after)) for message, chosen in sorted(by_message.items())
+    return ([row(flown, message, chosen, after, before) for message, chosen in sorted(by_message.items())],
+            [(stream, row(flown, message, {stream}, after, before)) for message, chosen in sorted(by_message.items())
              for stream in sorted(chosen)])
 
 
@@ -286,9 +297,9 @@ def queue_cells(fact):
 NODE_HEADS = ("node", "sends on average", "in its worst second", "budget", "lowest estimate of the channel")
 
 
-def node_cells(flown, node, after):
+def node_cells(flown, node, after, before):
     """What a node's limits left it, as its gateway tells."""
-    points = [point for point in flown.simulated.air.get(node, []) if point[0] >= after]
+    points = [point for point in flown.simulated.air.get(node, []) if after <= point[0] < before]
     used = [point[1] for point in points] or [0]
     budget = max((point[2] for point in points), default=0)
     capacity = min((point[3] for point in points if point[3] > 0), default=0)
@@ -337,8 +348,8 @@ def print_table(heads, found):
 def show(flown, radio, folder):
     """Prints the figures, and writes the report."""
     flight = flown.simulated
-    messages, single = rows(flown, radio.after)
-    nodes = [node_cells(flown, node, radio.after) for node in flight.scenario.nodes]
+    messages, single = rows(flown, *radio.span)
+    nodes = [node_cells(flown, node, *radio.span) for node in flight.scenario.nodes]
     queues = [queue_cells(fact) for fact in flown.queues]
     name = flight.scenario.path.stem
     summary = f"{len(nodes)} nodes, {flight.end:.1f} s over {radio.text()}" + (", in real time" if flight.radio else "")

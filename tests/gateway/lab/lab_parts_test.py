@@ -435,6 +435,15 @@ class WhatIfTest(InFolder):
         (late,), _ = what_if.rows(self.flown(), 5)
         self.assertEqual((late.posted, late.went_out, late.arrived), (50, 25, 25))
 
+    def test_values_are_counted_up_to_a_time(self):
+        (row,), _ = what_if.rows(self.flown(), 5, 8)
+        self.assertEqual((row.posted, row.arrived), (30, 15))
+
+    def test_counting_up_to_a_time_before_the_first_one_is_refused(self):
+        radio = dataclasses.replace(self.RADIO, after=5, before=5)
+        with self.assertRaisesRegex(ScenarioError, "--before: 5 s .*5 s of --after"):
+            what_if.read("flight.mcap", [{"fact": "flight", "end": 10e9}], radio)
+
     def test_ages_begin_with_the_first_post_and_are_compared_to_those_of_the_recording(self):
         (row,), _ = what_if.rows(self.flown(), 0)
         self.assertAlmostEqual(row.delay_p90, 0.1)
