@@ -1,4 +1,4 @@
-// What is known of a node over several paths.
+// The state of a node that is heard over several paths.
 #include "paths/PeersOverPaths.h"
 
 #include <gtest/gtest.h>
