@@ -21,6 +21,7 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "Command.h"
 #include "CommonOptions.h"
@@ -154,7 +155,13 @@ public:
         int rounds = 1;
         while (!wakeup.IsInterrupted())
         {
-            Turn();
+            const std::optional<bool> sendsFiles = SendsFiles();
+            if (sendsFiles == false)
+            {
+                Output::Talk(_options.Node + " sends no files: its configuration has no `fetch`");
+                return ProblemFound;
+            }
+            Turn(sendsFiles.has_value());
             if (!_fetch.Refusal().empty())
             {
                 Output::Talk(_options.Node + ": " + _fetch.Refusal());
@@ -190,7 +197,21 @@ public:
     const Backfill::FileFetch &Fetch() const { return _fetch; }
 
 private:
-    void Turn()
+    // By the node's announcement; empty while that has not come.
+    std::optional<bool> SendsFiles() const
+    {
+        const std::vector<FleetSession::Node> nodes = _session.Nodes();
+        const FleetSession::Node *const node = FindNode(nodes, _options.Node);
+        if (node == nullptr || !node->Offers)
+        {
+            return std::nullopt;
+        }
+        const auto &queues = node->Offers->accepts;
+        return std::any_of(queues.begin(), queues.end(),
+                           [](const Gateway::AcceptedQueue &queue)
+                           { return queue.queue == Backfill::QueueName; });
+    }
+    void Turn(bool maySend)
     {
         const Duration now = std::chrono::steady_clock::now().time_since_epoch();
         const Gateway::Fleet fleet = _session.Fleet();
@@ -218,6 +239,10 @@ private:
                 }
                 _part.Append(bytes);
             }
+        }
+        if (!maySend)
+        {
+            return;
         }
         for (const Backfill::Question &question : _fetch.Due(now))
         {

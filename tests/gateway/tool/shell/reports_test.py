@@ -5,6 +5,7 @@ Usage: reports_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 
 import contextlib
 import json
+import pathlib
 import re
 import subprocess
 import tempfile
@@ -113,10 +114,18 @@ def nodes_are_offered_to_a_shell(rabit):
     harness.until(offered)
 
 
+def a_node_that_sends_no_files_is_named_without_a_try(rabit):
+    with tempfile.TemporaryDirectory() as folder:
+        done = rabit.run("fetch", "uav1:none", "--to", f"{folder}/none", "--wait", "60")
+        assert (done.returncode, done.stdout) == (1, ""), done
+        assert done.stderr == "rabit: uav1 sends no files: its configuration has no `fetch`\n", done
+        assert not list(pathlib.Path(folder).iterdir()), done
+
+
 TESTS = [the_own_problems_of_a_node_are_listed_and_diagnosed, the_last_lines_of_a_log_are_shown_with_the_node_running_on,
          a_log_is_followed_while_it_is_written, a_node_is_pinged,
          a_node_that_is_not_there_is_neither_pinged_nor_has_it_a_log, the_channel_is_shown_by_node_and_class,
-         nodes_are_offered_to_a_shell]
+         nodes_are_offered_to_a_shell, a_node_that_sends_no_files_is_named_without_a_try]
 
 
 if __name__ == "__main__":
