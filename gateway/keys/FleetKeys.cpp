@@ -1,6 +1,7 @@
 #include "keys/FleetKeys.h"
 
 #include <fcntl.h>
+#include <rabit/base/NaturalOrder.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -182,7 +183,7 @@ std::vector<std::string> FleetKeys::Nodes() const
             nodes.push_back(name);
         }
     }
-    std::sort(nodes.begin(), nodes.end());
+    std::sort(nodes.begin(), nodes.end(), NaturalOrder());
     return nodes;
 }
 

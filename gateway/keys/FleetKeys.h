@@ -48,7 +48,7 @@ public:
 
     const std::string &Fleet() const { return _fleet; }
     std::time_t EndsAt() const { return _validity.To; }
-    // The nodes that have a folder.
+    // The nodes that have a folder, in their NaturalOrder.
     std::vector<std::string> Nodes() const;
     // The nodes whose certificates are all revoked.
     std::vector<std::string> Revoked() const;

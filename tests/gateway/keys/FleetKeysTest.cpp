@@ -126,6 +126,13 @@ TEST_F(FleetKeysTest, RenewingGivesAnotherKeyAndAnotherSubject)
     EXPECT_GT(NodeKeys(FolderOf("uav1")).Subject().Number, number);
 }
 
+TEST_F(FleetKeysTest, NodesAreListedInTheirNaturalOrder)
+{
+    Add("uav10");
+    Add("uav2");
+    EXPECT_THAT(FleetKeys(Place()).Nodes(), ElementsAre("uav2", "uav10"));
+}
+
 // Renewing renames the node's folder, and then the new one.
 TEST_F(FleetKeysTest, ARenewalThatWasCutShortLeavesTheOldKeys)
 {
