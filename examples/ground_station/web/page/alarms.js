@@ -28,7 +28,7 @@ export function alarmsOf(model) {
       add('battery', node, `battery ${fixed(health.battery_percent, 0)} %: it has to land soon`);
     else if (told && health.wants_home) add('home', node, `flies home by itself: ${health.reason}`);
     if (one.bad_position) add('position', node, `its position cannot be true: ${one.bad_position}`);
-    if (one.without_orders) add('orders', node, 'started again in flight, and waits for an order');
+    if (one.without_orders) add('orders', node, 'started again, and waits for an order');
   }
   return found;
 }
