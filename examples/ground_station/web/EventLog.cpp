@@ -182,7 +182,8 @@ void EventLog::LookAtCommands(const CommandList &list)
     _commands = std::move(now);  // the list is bounded, and so is this
 }
 
-// The problems that begin together at one node are one event: a node that comes may have dozens.
+// The problems that begin together at one node are one event: a node that comes may have dozens. They have no
+// sign, which is for what an operator has to look at: the list of problems has them.
 void EventLog::LookAtProblems(const StationData &now)
 {
     std::map<std::string, KnownProblem> problems;
@@ -207,7 +208,7 @@ void EventLog::LookAtProblems(const StationData &now)
         ++count;
     }
     for (const auto &[node, found] : news)
-        Add(Weight::Warning, node,
+        Add(Weight::Info, node,
             found.second == 1 ? found.first
                               : found.first + "; and " + std::to_string(found.second - 1) + " more problems");
     _problems = std::move(problems);

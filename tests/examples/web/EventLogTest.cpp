@@ -197,6 +197,7 @@ TEST_F(EventLog, TellsOfProblemsOnce)
     EXPECT_THAT(New(), ElementsAre());
     _data.NowS += Ground::EventLog::ProblemLastsS;
     EXPECT_THAT(New(), ElementsAre("uav3|subscribe Pose: other type"));
+    EXPECT_EQ(_log.Events().back().How, Weight::Info) << "signs are for what an operator has to look at";
     EXPECT_THAT(New(), ElementsAre());
     _data.Problems.clear();
     EXPECT_THAT(New(), ElementsAre());
