@@ -131,9 +131,16 @@ private:
         throw py::value_error(_path + ": expected " + expected + ", not " + Shown(value));
     }
 
+    // numpy's boolean is `numpy.bool_` before numpy 2, and `numpy.bool` since.
+    static bool IsBool(py::handle value)
+    {
+        const std::string_view type = Py_TYPE(value.ptr())->tp_name;
+        return PyBool_Check(value.ptr()) || type == "numpy.bool" || type == "numpy.bool_";
+    }
+
     void Bool(py::handle value)
     {
-        if (!PyBool_Check(value.ptr()) && std::string(Py_TYPE(value.ptr())->tp_name) != "numpy.bool_")
+        if (!IsBool(value))
         {
             WrongType("True or False", value);
         }

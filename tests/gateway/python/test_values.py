@@ -87,6 +87,15 @@ def test_every_kind_of_member_survives_encoding(everything):
     assert rabit.replace(value, byte=1) != value
 
 
+@pytest.mark.parametrize("name", ["numpy.bool", "numpy.bool_"])
+def test_a_boolean_of_each_numpy_is_a_boolean(everything, name):
+    """numpy 2 has another name for its type than numpy 1; only one of the two is installed."""
+    true = type(name, (), {"__bool__": lambda self: True})()
+    value = everything.PyEverything.All(flag=true, bits=[true])
+    again = rabit.from_bytes(everything.PyEverything.All, rabit.to_bytes(value))
+    assert again.flag is True and list(again.bits) == [True]
+
+
 def test_numbers_of_a_sample_lie_in_one_copy_of_it(everything):
     py = everything.PyEverything
     again = rabit.from_bytes(py.All, rabit.to_bytes(py.All(numbers=[1, 2, 3], bytes=bytes(1000))))
