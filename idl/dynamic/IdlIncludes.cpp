@@ -80,7 +80,7 @@ public:
 private:
     void Mark(std::size_t line, const std::string &file)
     {
-        Text << "#line " << line << " \"" << file << "\"\n";
+        Text << "#line " << std::to_string(line) << " \"" << file << "\"\n";
     }
 
     void Include(const std::filesystem::path &includer, const std::string &name, const std::string &place,

@@ -6,11 +6,20 @@
 
 #include <filesystem>
 #include <fstream>
+#include <locale>
 
 namespace Rabit
 {
 namespace
 {
+
+// Writes 1400 as 1,400, as the locales of many languages do.
+class DigitsInGroups : public std::numpunct<char>
+{
+protected:
+    char do_thousands_sep() const override { return ','; }
+    std::string do_grouping() const override { return "\3"; }
+};
 
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -52,6 +61,18 @@ TEST_F(IdlFileTest, AMessageHasTheTextThatTheGeneratorGivesIt)
     EXPECT_EQ(file.Messages[0]->IdlText(), MessageTypeRegistry::Find("Uav::GoHome")->IdlText());
     ASSERT_THAT(file.Constants, SizeIs(1));
     EXPECT_EQ(file.Constants[0], std::make_pair(std::string("Uav::Places"), std::string("64")));
+}
+
+TEST_F(IdlFileTest, ALongFileIsTheSameInEachLocale)
+{
+    Write("point.idl", "module A { @nested @final struct Point { double x; }; };\n");
+    const std::string text = std::string(1200, '\n') + "#include \"point.idl\"\n" +
+                             "module B { @final struct Line { A::Point from; }; };\n";
+    const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DigitsInGroups));
+    const IdlFile file = IdlFile::Load(Write("a.idl", text));
+    std::locale::global(before);
+    EXPECT_THAT(file.Reason, IsEmpty());
+    EXPECT_THAT(file.Messages, SizeIs(1));
 }
 
 TEST_F(IdlFileTest, AByteOrderMarkAtTheBeginningOfAFileIsNoPartOfTheText)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <locale>
 #include <sstream>
 
 #include "common/HostNetworks.h"
@@ -85,6 +86,7 @@ std::string Read(const std::string &path)
 {
     std::ifstream file(path);
     std::ostringstream content;
+    content.imbue(std::locale::classic());
     if (!file || !(content << file.rdbuf()))
     {
         throw TransportError("the Cyclone DDS configuration " + path + " cannot be read", "backend_config");
@@ -114,6 +116,7 @@ std::string MakeDomainConfig(const TransportSettings &settings)
 {
     const std::size_t largest = settings.MaxDatagram - (settings.Security ? SecurityRoom : 0);
     std::ostringstream xml;
+    xml.imbue(std::locale::classic());  // the program's own may write 1400 as 1,400
     xml << "<Domain><General>";
     if (!HasOwnInterfaces(settings.BackendConfig))
     {
