@@ -78,6 +78,17 @@ private:
             Fail(rule.Line,
                  "`" + rule.Topic + "` is no topic name; expected 1 to 255 letters without blanks");
         }
+        if (topic.find_first_of("*?") != std::string::npos)
+        {
+            Fail(rule.Line, "`" + rule.Topic +
+                                "` is taken literally, as the name of one topic; expected a name without "
+                                "wildcards, and an entry for each topic");
+        }
+        if (const std::string why = WhyNoRosTopic(rule.Topic);
+            rule.Names == ForeignRule::WireNames::Ros2 && !why.empty())
+        {
+            Fail(rule.Line, "`" + rule.Topic + "` is no topic name of ROS 2: it " + why);
+        }
         if (topic.rfind("rabit/", 0) == 0)
         {
             Fail(rule.Line, "`" + topic + "` is a topic of the gateways themselves");
@@ -125,6 +136,29 @@ private:
             if (rule.Local.rfind(_config.Name + "/", 0) == 0)
             {
                 Fail(rule.Line, "`" + rule.Local + "` belongs to the gateway; expected another name");
+            }
+            CheckNoMirror(rule);
+        }
+    }
+
+    // A message that comes from another node has one source.
+    void CheckNoMirror(const ForeignRule &rule) const
+    {
+        const std::size_t slash = rule.Local.find('/');
+        if (slash == std::string::npos)
+        {
+            return;
+        }
+        const std::string node = rule.Local.substr(0, slash);
+        const std::string message = rule.Local.substr(slash + 1);
+        for (const SubscribeRule &mirror : _config.Subscribe)
+        {
+            if (mirror.Message == message && MatchesAny(mirror.From, node))
+            {
+                Fail(rule.Line, "`" + rule.Local + "` is the message of the node `" + node +
+                                    "` that `subscribe` brings" +
+                                    (mirror.Line > 0 ? " in line " + std::to_string(mirror.Line) : "") +
+                                    "; expected another name");
             }
         }
     }

@@ -28,4 +28,30 @@ std::string RosTypeName(std::string_view type)
                            std::string(type.substr(name)) + "_";
 }
 
+std::string WhyNoRosTopic(std::string_view topic)
+{
+    constexpr std::size_t Prefix = 3;
+    const std::string name = RosTopicName(topic).substr(Prefix);
+    if (name.empty() || name.back() == '/' || name.front() == '/' || name.find("//") != std::string::npos)
+    {
+        return "has an empty part between slashes";
+    }
+    char before = '/';
+    for (const char c : name)
+    {
+        const bool isDigit = c >= '0' && c <= '9';
+        const bool isLetter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+        if (!isDigit && !isLetter && c != '/')
+        {
+            return std::string("has `") + c + "`; ROS 2 allows A-Z a-z 0-9 _ /";
+        }
+        if (isDigit && before == '/')
+        {
+            return "has a part that begins with a digit";
+        }
+        before = c;
+    }
+    return "";
+}
+
 }  // namespace Rabit

@@ -186,6 +186,32 @@ TEST_F(ForeignConfigTest, RefusesNamesAndRangesThatCannotBe)
               "max_rate is out of range; expected 0 (no limit) to 1000000 a second");
 }
 
+TEST_F(ForeignConfigTest, RefusesAPatternOfTopics)
+{
+    EXPECT_EQ(Refusal("subscribe: '/*/pose', type: Uav::Pose, as: A, names: ros2"),
+              "`/*/pose` is taken literally, as the name of one topic; expected a name without wildcards, "
+              "and an entry for each topic");
+    EXPECT_NE(Refusal("publish: A, topic: 'a?', type: Uav::Pose"), "no error");
+}
+
+TEST_F(ForeignConfigTest, RefusesATopicThatRosForbids)
+{
+    EXPECT_EQ(Refusal("subscribe: /uav-1/pose, type: Uav::Pose, as: A, names: ros2"),
+              "`/uav-1/pose` is no topic name of ROS 2: it has `-`; ROS 2 allows A-Z a-z 0-9 _ /");
+    EXPECT_EQ(Refusal("subscribe: /uav-1/pose, type: Uav::Pose, as: A"), "no error") << "a plain DDS name";
+}
+
+TEST_F(ForeignConfigTest, RefusesTheNameOfAMessageThatComesFromAnotherNode)
+{
+    const std::string entry = "foreign:\n  - {subscribe: a, type: Uav::Pose, as: uav2/Pose}\n";
+    EXPECT_EQ(ErrorOf("subscribe:\n  - {message: Pose, type: Uav::Pose, from: [\"uav*\"]}\n" + entry),
+              _file.filename().string() +
+                  ":5: `uav2/Pose` is the message of the node `uav2` that `subscribe` brings in line 3; "
+                  "expected another name");
+    EXPECT_EQ(ErrorOf("subscribe:\n  - {message: Pose, type: Uav::Pose, from: [ground]}\n" + entry),
+              "no error");
+}
+
 // Returns the error of a rule that a program made, as if it stood in line 7.
 std::string RefusalOf(const std::function<void(ForeignRule &)> &spoil)
 {

@@ -35,5 +35,25 @@ TEST(RosNames, ATypeOfTheWireStaysAsItIs)
     EXPECT_EQ(RosTypeName("odds_::String"), "odds_::dds_::String_");
 }
 
+TEST(RosNames, ATopicOfLettersDigitsAndSlashesMayBe)
+{
+    for (const char *topic :
+         {"chatter", "/chatter", "rt/fmu/out/vehicle_odometry_v1", "/uav1/_pose", "rr/addReply"})
+    {
+        EXPECT_EQ(WhyNoRosTopic(topic), "") << topic;
+    }
+}
+
+TEST(RosNames, SaysWhyRosForbidsATopic)
+{
+    EXPECT_EQ(WhyNoRosTopic("/uav-1/pose"), "has `-`; ROS 2 allows A-Z a-z 0-9 _ /");
+    EXPECT_EQ(WhyNoRosTopic("~/pose"), "has `~`; ROS 2 allows A-Z a-z 0-9 _ /");
+    EXPECT_EQ(WhyNoRosTopic("/1/pose"), "has a part that begins with a digit");
+    for (const char *topic : {"", "/", "/pose/", "//pose", "/uav1//pose"})
+    {
+        EXPECT_EQ(WhyNoRosTopic(topic), "has an empty part between slashes") << topic;
+    }
+}
+
 }  // namespace
 }  // namespace Rabit
