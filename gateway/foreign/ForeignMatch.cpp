@@ -142,6 +142,34 @@ std::vector<RemoteEndpoint> Matching(const ForeignRule &rule, const TopicQos &ou
     return matching;
 }
 
+std::string Shortfall(const ForeignRule &rule, const TopicQos &ours,
+                      const std::vector<RemoteEndpoint> &endpoints)
+{
+    bool anyReliable = false;
+    bool anyBestEffort = false;
+    for (const RemoteEndpoint &endpoint : endpoints)
+    {
+        if (!IsOpposite(rule, endpoint) || !IsInDefaultPartition(endpoint))
+        {
+            continue;
+        }
+        if (std::string why = WhyNot(rule, ours, endpoint); !why.empty())
+        {
+            return why;
+        }
+        const bool isReliable = endpoint.Reliability == Reliability::Reliable;
+        anyReliable = anyReliable || isReliable;
+        anyBestEffort = anyBestEffort || !isReliable;
+    }
+    const bool isAsFound = IsRead(rule) && !rule.Reliability;
+    return isAsFound && rule.Each == ForeignRule::Delivery::Queue && anyReliable && anyBestEffort
+               ? "a program that writes `" + WireTopicOf(rule) +
+                     "` is best effort, so this node reads the reliable ones without repair, too: samples "
+                     "may "
+                     "be lost; give the entry a `reliability`"
+               : "";
+}
+
 std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
                     const std::vector<RemoteEndpoint> &endpoints, const std::vector<std::string> &topics,
                     const Network &network, bool &isMismatch)
@@ -166,8 +194,12 @@ std::string WhyNone(const ForeignRule &rule, const TopicQos &ours,
     }
     std::vector<std::string> candidates;
     std::copy_if(topics.begin(), topics.end(), std::back_inserter(candidates),
-                 [&rule](const std::string &topic)
-                 { return topic.rfind("rabit/", 0) != 0 && topic != WireTopicOf(rule); });
+                 [&](const std::string &topic)
+                 {
+                     const auto &own = network.Own;
+                     return topic.rfind("rabit/", 0) != 0 && topic != WireTopicOf(rule) &&
+                            std::find(own.begin(), own.end(), topic) == own.end();
+                 });
     const std::string hint = NearestWordHint(WireTopicOf(rule), candidates);
     // If this node writes the topic, only a misspelled name is worth a hint: a reader may still come.
     const bool isSlip = hint.rfind("; did you mean", 0) == 0;

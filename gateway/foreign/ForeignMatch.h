@@ -30,12 +30,19 @@ std::string WhyNot(const ForeignRule &rule, const TopicQos &ours, const RemoteEn
 std::vector<RemoteEndpoint> Matching(const ForeignRule &rule, const TopicQos &ours,
                                      const std::vector<RemoteEndpoint> &endpoints);
 
+// Returns, in words, how a program falls short although at least one matches: it has another type or QoS, or
+// it makes a queue of reliable writers best effort. Partitions are no reason: who is in another one is meant
+// for others. Empty: no program falls short.
+std::string Shortfall(const ForeignRule &rule, const TopicQos &ours,
+                      const std::vector<RemoteEndpoint> &endpoints);
+
 // Where this node listens.
 struct Network
 {
     int Domain = 0;
     std::vector<std::string> Interfaces{};  // empty: all
     std::string Path{};                     // of several, the one that foreign topics use
+    std::vector<std::string> Own{};         // topics that this node uses itself, which no hint names
 };
 
 // Returns, by name, why no program's endpoint matches. Precondition: none does. `topics` are all topics on

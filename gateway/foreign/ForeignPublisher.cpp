@@ -231,11 +231,17 @@ void ForeignPublisher::Look(Duration now)
 {
     _nextLook = now + LookPeriod;
     const std::vector<RemoteEndpoint> endpoints = _session.RemoteEndpointsOn(_status.topic);
-    const bool any = !ForeignMatch::Matching(_rule, _qos, endpoints).empty();
-    _isMismatch = false;
-    std::string reason =
-        any ? ""
-            : ForeignMatch::WhyNone(_rule, _qos, endpoints, _session.RemoteTopics(), _network, _isMismatch);
+    std::string reason;
+    if (ForeignMatch::Matching(_rule, _qos, endpoints).empty())
+    {
+        reason =
+            ForeignMatch::WhyNone(_rule, _qos, endpoints, _session.RemoteTopics(), _network, _isMismatch);
+    }
+    else
+    {
+        reason = ForeignMatch::Shortfall(_rule, _qos, endpoints);
+        _isMismatch = !reason.empty();
+    }
     _localProblem = LocalProblem();
     reason = _localProblem.empty() ? std::move(reason) : _localProblem;
     _changed |= reason != _status.reason;

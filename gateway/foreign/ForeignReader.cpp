@@ -314,7 +314,8 @@ void ForeignReader::Look(Duration now)
     std::copy_if(endpoints.begin(), endpoints.end(), std::back_inserter(_found),
                  [](const RemoteEndpoint &endpoint) { return endpoint.IsWriter && endpoint.Node.empty(); });
     _matching = ForeignMatch::Matching(_rule, _qos, endpoints).size();
-    _isMismatch = false;
+    _shortfall = _matching > 0 ? ForeignMatch::Shortfall(_rule, _qos, endpoints) : "";
+    _isMismatch = !_shortfall.empty();
     _whyNone = _matching > 0 ? ""
                              : ForeignMatch::WhyNone(_rule, _qos, endpoints, _session->RemoteTopics(),
                                                      _network, _isMismatch);
@@ -340,6 +341,10 @@ void ForeignReader::Judge(Duration now)
             state = Gateway::NodeState::STALE;
             // The limit, not the age, so that the text does not change with each look.
             reason = "nothing newer than " + Seconds(_rule.StaleAfter);
+        }
+        if (!_shortfall.empty())
+        {
+            reason += (reason.empty() ? "" : "; ") + _shortfall;
         }
         if (_undecodableInARow > 0)
         {
@@ -390,8 +395,8 @@ const Gateway::ForeignTopic &ForeignReader::Status(Duration now)
 std::optional<Gateway::Problem> ForeignReader::Problem() const
 {
     const std::lock_guard lock(_mutex);
-    const bool waitsForTheFirst =
-        _status.state == Gateway::NodeState::LOST && _matching > 0 && _undecodableInARow == 0;
+    const bool waitsForTheFirst = _status.state == Gateway::NodeState::LOST && _matching > 0 &&
+                                  _shortfall.empty() && _undecodableInARow == 0;
     std::string reason = _status.reason;
     if (_waiting.size() >= _rule.Capacity || (_wasDropped && !_waiting.empty()))
     {

@@ -116,6 +116,7 @@ private:
     std::vector<RemoteEndpoint> _found;  // the programs' writers of the topic
     std::size_t _matching = 0;           // those of _found that match
     std::string _whyNone;
+    std::string _shortfall;  // of the other programs; empty while _matching is 0
     bool _isMismatch = false;
     std::optional<Duration> _nextLook;
     bool _changed = true;

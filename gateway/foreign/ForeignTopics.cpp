@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "names/ForeignNames.h"
+
 namespace Rabit
 {
 namespace
@@ -23,8 +25,16 @@ std::string ForwarderOf(const GatewayConfig &config)
 void ForeignTopics::Open(TransportSession &session, RabitManager &manager, Duration now)
 {
     const GatewayConfig path = PathConfigsOf(_config).front();
-    const ForeignMatch::Network network{_config.Domain, path.Interfaces,
-                                        path.Paths.empty() ? "" : path.Paths.front().Name};
+    ForeignMatch::Network network{_config.Domain, path.Interfaces,
+                                  path.Paths.empty() ? "" : path.Paths.front().Name};
+    for (const ForeignRule &rule : _config.Foreign)
+    {
+        network.Own.push_back(WireTopicOf(rule));
+    }
+    for (const PublishRule &rule : _config.Publish)
+    {
+        network.Own.push_back(rule.Message);
+    }
     for (const ForeignRule &rule : _config.Foreign)
     {
         const MessageType &type = *MessageTypeRegistry::Find(rule.Type);

@@ -155,6 +155,56 @@ TEST(ForeignMatch, SaysThatNobodyWritesItAndWhatIsThereInstead)
               "no program reads `rt/chatter` in domain 7; did you mean `rt/chater`?");
 }
 
+TEST(ForeignMatch, AHintNamesNoTopicThatThisNodeUsesItself)
+{
+    bool isMismatch = false;
+    ForeignMatch::Network network{7};
+    network.Own = {"rt/chatter_v1"};
+    EXPECT_EQ(ForeignMatch::WhyNone(Read(), ForeignMatch::FirstReaderQos(Read()), {},
+                                    {"rt/chatter_v1", "rt/chatter_v2"}, network, isMismatch),
+              "no program writes `rt/chatter` in domain 7; did you mean `rt/chatter_v2`?");
+}
+
+TEST(ForeignMatch, NamesAProgramThatFallsShortBesideOneThatMatches)
+{
+    const TopicQos ours = ForeignMatch::WriterQos(Written());
+    const RemoteEndpoint asking = Reader(Reliability::Reliable, Durability::TransientLocal);
+    const std::string why =
+        "a program that reads `rt/chatter` asks for transient local, this node offers volatile";
+    EXPECT_EQ(ForeignMatch::Shortfall(Written(), ours, {Reader(), asking}), why);
+    EXPECT_EQ(ForeignMatch::Shortfall(Written(), ours, {asking, Reader()}), why);
+    EXPECT_EQ(ForeignMatch::Shortfall(Written(), ours, {Reader(), Reader()}), "");
+}
+
+TEST(ForeignMatch, AProgramInAnotherPartitionDoesNotFallShort)
+{
+    RemoteEndpoint elsewhere = Reader(Reliability::Reliable, Durability::TransientLocal);
+    elsewhere.Partitions = {"lab"};
+    EXPECT_EQ(ForeignMatch::Shortfall(Written(), ForeignMatch::WriterQos(Written()), {Reader(), elsewhere}),
+              "");
+}
+
+// Returns what is said of a reliable and a best-effort writer.
+std::string ShortfallOfTwo(const ForeignRule &rule)
+{
+    const std::vector<RemoteEndpoint> two = {Writer(Reliability::Reliable), Writer(Reliability::BestEffort)};
+    return ForeignMatch::Shortfall(
+        rule, ForeignMatch::ReaderQos(rule, two, ForeignMatch::FirstReaderQos(rule)), two);
+}
+
+TEST(ForeignMatch, ABestEffortWriterThatTakesTheRepairFromAQueueIsNamed)
+{
+    ForeignRule rule = Read();
+    rule.Each = ForeignRule::Delivery::Queue;
+    EXPECT_EQ(
+        ShortfallOfTwo(rule),
+        "a program that writes `rt/chatter` is best effort, so this node reads the reliable ones without "
+        "repair, too: samples may be lost; give the entry a `reliability`");
+    rule.Reliability = Reliability::BestEffort;
+    EXPECT_EQ(ShortfallOfTwo(rule), "") << "as the configuration says";
+    EXPECT_EQ(ShortfallOfTwo(Read()), "") << "the newest sample is enough";
+}
+
 TEST(ForeignMatch, SaysOnWhichInterfacesProgramsAreReached)
 {
     EXPECT_EQ(

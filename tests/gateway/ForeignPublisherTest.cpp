@@ -200,5 +200,27 @@ TEST_F(ForeignPublisherTest, SaysWhyNothingGoesAndThatAnotherTypeIsAProblem)
     EXPECT_TRUE(Publisher().TakeChange());
 }
 
+TEST_F(ForeignPublisherTest, AReaderThatGetsNothingStaysAProblemWhenAnotherOneMatches)
+{
+    const RemoteEndpoint matching = network.Endpoints.front();
+    RemoteEndpoint asking = matching;
+    asking.Reliability = Reliability::Reliable;
+    asking.Durability = Durability::TransientLocal;
+    network.Endpoints = {asking};
+    Publisher();
+    Service();
+    const auto before = Publisher().Problem(clock->Monotonic());
+    ASSERT_TRUE(before);
+    network.Endpoints = {asking, matching};
+    clock->Advance(ForeignPublisher::LookPeriod);
+    Service();
+    ASSERT_TRUE(Publisher().Problem(clock->Monotonic()));
+    EXPECT_EQ(Publisher().Problem(clock->Monotonic())->reason, before->reason);
+    network.Endpoints = {matching};
+    clock->Advance(ForeignPublisher::LookPeriod);
+    Service();
+    EXPECT_FALSE(Publisher().Problem(clock->Monotonic()));
+}
+
 }  // namespace
 }  // namespace Rabit

@@ -131,6 +131,22 @@ protected:
     std::unique_ptr<ForeignReader> reader;
 };
 
+TEST_F(ForeignReaderTest, AWriterThatDoesNotMatchStaysAProblemWhenAnotherOneMatches)
+{
+    rule.Reliability = Reliability::Reliable;
+    const std::string why = "a program that writes `contacts` is best effort, this node asks for reliable";
+    EXPECT_EQ(ProblemText(), "foreign contacts: " + why);
+    network.Endpoints.push_back(Program(2, Reliability::Reliable));
+    Advance(ForeignReader::LookPeriod);
+    network.Deliver(type, Of(7), 1, 2);
+    EXPECT_EQ(Judgement(), "UP: " + why);
+    EXPECT_EQ(ProblemText(), "foreign contacts: " + why);
+    network.Endpoints.erase(network.Endpoints.begin());
+    Advance(ForeignReader::LookPeriod);
+    EXPECT_EQ(Judgement(), "UP");
+    EXPECT_EQ(ProblemText(), "");
+}
+
 // A handler that runs until the test lets it return.
 struct Held
 {
