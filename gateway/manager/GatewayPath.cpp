@@ -116,7 +116,9 @@ void GatewayPath::TakeDelays(const Presence::Served &served, Duration now)
 
 void GatewayPath::AddProblems(Gateway::Fleet &fleet, Duration now) const
 {
-    if (auto lonely = Loneliness::Look(_config, _presence.Peers(), _session->Counters(), _openedAt, now))
+    const auto hearsPrograms = [this] { return Loneliness::HearsPrograms(*_session); };
+    if (auto lonely =
+            Loneliness::Look(_config, _presence.Peers(), _session->Counters(), hearsPrograms, _openedAt, now))
     {
         lonely->subject = Name().empty() ? lonely->subject : "path " + Name();
         fleet.problems.push_back(std::move(*lonely));

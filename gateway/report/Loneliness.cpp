@@ -38,11 +38,30 @@ std::string WhatGoesOut(const GatewayConfig &config, const TransportCounters &co
     return config.BackendConfig.empty() ? "multicast goes out" : "multicast is on";
 }
 
+// True if foreign programs may be all that the node is there for.
+bool IsForPrograms(const GatewayConfig &config)
+{
+    return !config.Foreign.empty() && config.Subscribe.empty() && config.Send.empty();
+}
+
 }  // namespace
 
+bool HearsPrograms(const TransportSession &session)
+{
+    const std::vector<std::string> topics = session.RemoteTopics();
+    return std::any_of(topics.begin(), topics.end(),
+                       [&session](const std::string &topic)
+                       {
+                           const std::vector<RemoteEndpoint> others = session.RemoteEndpointsOn(topic);
+                           return std::any_of(others.begin(), others.end(),
+                                              [](const RemoteEndpoint &other) { return other.Node.empty(); });
+                       });
+}
+
 std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeersOverPaths &peers,
-                                     const TransportCounters &counters, std::chrono::nanoseconds openedAt,
-                                     std::chrono::nanoseconds now)
+                                     const TransportCounters &counters,
+                                     const std::function<bool()> &hearsPrograms,
+                                     std::chrono::nanoseconds openedAt, std::chrono::nanoseconds now)
 {
     std::chrono::nanoseconds last = openedAt;
     for (const PeerTable::Peer *peer : peers.Heard())
@@ -57,10 +76,15 @@ std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeersOve
     {
         return std::nullopt;
     }
+    const bool arePrograms = hearsPrograms();
+    if (arePrograms && IsForPrograms(config))
+    {
+        return std::nullopt;
+    }
     return Gateway::Problem{
         "network", "",
-        "nobody heard in domain " + std::to_string(config.Domain) + " on " +
-            Listed(config.Interfaces, "all interfaces") + " for " +
+        std::string(arePrograms ? "only programs that are no nodes" : "nobody") + " heard in domain " +
+            std::to_string(config.Domain) + " on " + Listed(config.Interfaces, "all interfaces") + " for " +
             std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Patience).count()) + " s; " +
             WhatGoesOut(config, counters) + "; peers: " + Listed(config.Peers, "none") +
             " (docs/how_to/connect.md)",

@@ -4,6 +4,7 @@
 #include <rabit/transport/Transport.h>
 
 #include <chrono>
+#include <functional>
 #include <optional>
 
 #include "gateway.idl.h"
@@ -13,8 +14,8 @@ namespace Rabit
 {
 
 // Reports that a node hears no other node. It cannot hear nodes of other domains, or nodes whose multicast
-// does not get through, so the report tells where this node listens and what it sends. Pure functions of
-// their arguments.
+// does not get through, so the report tells where this node listens and what it sends. A node with foreign
+// topics that wants nothing of other nodes is not lonely while it hears foreign programs.
 namespace Loneliness
 {
 
@@ -22,10 +23,15 @@ namespace Loneliness
 // growing number would make a new problem each second.
 inline constexpr std::chrono::nanoseconds Patience = std::chrono::seconds(10);
 
-// Returns the problem, if there is one. `openedAt` is when this node began to listen.
+// True if a program that is no node has a writer or reader that the session knows.
+bool HearsPrograms(const TransportSession &session);
+
+// Returns the problem, if there is one. `openedAt` is when this node began to listen. `hearsPrograms` is
+// called only if no node is live.
 std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeersOverPaths &peers,
-                                     const TransportCounters &counters, std::chrono::nanoseconds openedAt,
-                                     std::chrono::nanoseconds now);
+                                     const TransportCounters &counters,
+                                     const std::function<bool()> &hearsPrograms,
+                                     std::chrono::nanoseconds openedAt, std::chrono::nanoseconds now);
 
 }  // namespace Loneliness
 }  // namespace Rabit

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "../core/CapturedLog.h"
 #include "BeatSamples.h"
@@ -34,12 +36,14 @@ protected:
     // Returns the problem of a node that listens since second 100; empty if it has none.
     std::string ReasonAt(std::chrono::nanoseconds now) const
     {
-        const auto problem = Loneliness::Look(config, peers, counters, 100s, now);
+        const auto problem = Loneliness::Look(
+            config, peers, counters, [this] { return programs; }, 100s, now);
         return problem ? problem->subject + ": " + problem->reason : "";
     }
 
     GatewayConfig config;
     TransportCounters counters;
+    bool programs = false;
     PeerTable peers{"ground", 1};
 };
 
@@ -73,6 +77,22 @@ TEST_F(LonelinessTest, SaysWhenNothingGoesOut)
     EXPECT_THAT(ReasonAt(110s), HasSubstr("; multicast is on; ")) << "not counted then";
 }
 
+TEST_F(LonelinessTest, ANodeWhosePartnersAreForeignProgramsIsNotLonely)
+{
+    programs = true;
+    config.Foreign.resize(1);
+    EXPECT_EQ(ReasonAt(130s), "");
+}
+
+TEST_F(LonelinessTest, ANodeThatWantsOtherNodesSaysThatItHearsOnlyPrograms)
+{
+    programs = true;
+    EXPECT_THAT(ReasonAt(130s), HasSubstr("only programs that are no nodes")) << "it has no foreign topic";
+    config.Foreign.resize(1);
+    config.Subscribe = {{.Message = "Pose", .Type = "Uav::Pose"}};
+    EXPECT_THAT(ReasonAt(130s), HasSubstr("network: only programs that are no nodes heard in domain 7 on "));
+}
+
 TEST_F(LonelinessTest, CountsFromTheLastBeatOfANodeThatIsLost)
 {
     HeardBeat heard;
@@ -85,6 +105,38 @@ TEST_F(LonelinessTest, CountsFromTheLastBeatOfANodeThatIsLost)
     peers.Advance(209s);
     EXPECT_EQ(ReasonAt(209s), "");
     EXPECT_THAT(ReasonAt(212s), HasSubstr("nobody heard"));
+}
+
+// Knows one endpoint.
+class OneEndpointSession final : public TransportSession
+{
+public:
+    std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &, const TopicQos &,
+                                                  const std::vector<std::string> &) override
+    {
+        return nullptr;
+    }
+    std::unique_ptr<TransportReader> CreateReader(const TopicDescription &, const TopicQos &,
+                                                  const std::vector<std::string> &, SampleHandler) override
+    {
+        return nullptr;
+    }
+    TransportCounters Counters() const override { return {}; }
+    std::vector<std::string> RemoteTopics() const override { return {Endpoint.Topic}; }
+    std::vector<RemoteEndpoint> RemoteEndpointsOn(const std::string &topic) const override
+    {
+        return topic == Endpoint.Topic ? std::vector{Endpoint} : std::vector<RemoteEndpoint>();
+    }
+
+    RemoteEndpoint Endpoint{.Topic = "rt/chatter"};
+};
+
+TEST(LonelyNode, AnEndpointOfANodeIsNoneOfAProgram)
+{
+    OneEndpointSession session;
+    EXPECT_TRUE(Loneliness::HearsPrograms(session));
+    session.Endpoint.Node = "uav1";
+    EXPECT_FALSE(Loneliness::HearsPrograms(session));
 }
 
 TEST(LonelyNode, IsToldOnceHoweverLongItLastsAndOnceWhenSomebodyComes)
