@@ -1,5 +1,6 @@
 /* A plain Cyclone DDS program, with types that Cyclone's own compiler made, that writes or reads topics as ROS 2 and PX4's
- * agent do. Writes a number each 50 ms, which rises by one; says `got TOPIC NUMBER` for each that it reads.
+ * agent do. Writes a number each 50 ms, which rises by one; says `got TOPIC NUMBER` for each that it reads, and before the first
+ * one `announced TOPIC TEXT`, the USER_DATA of its writer.
  * Usage: plain_cyclone DOMAIN write|read:TOPIC:string|setpoint:reliable|best_effort:volatile|transient_local..., until SIGTERM */
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,7 @@ struct Endpoint {
     int writes;
     char topic[128];
     int is_setpoint;
+    int is_told; /* what its writer has announced */
     dds_entity_t entity;
 };
 
@@ -32,6 +34,7 @@ static void Open(dds_entity_t participant, char *description, struct Endpoint *e
     endpoint->writes = strcmp(way, "write") == 0;
     snprintf(endpoint->topic, sizeof endpoint->topic, "%s", topic);
     endpoint->is_setpoint = strcmp(type, "setpoint") == 0;
+    endpoint->is_told = 0;
     const dds_topic_descriptor_t *descriptor =
         endpoint->is_setpoint ? &px4_msgs_msg_dds__TrajectorySetpoint__desc : &std_msgs_msg_dds__String__desc;
     dds_qos_t *qos = dds_create_qos();
@@ -63,12 +66,34 @@ static void Write(const struct Endpoint *endpoint, unsigned long number)
     dds_write(endpoint->entity, &string);
 }
 
-static void Read(const struct Endpoint *endpoint)
+static void TellAnnounced(const struct Endpoint *endpoint, dds_instance_handle_t writer)
+{
+    dds_builtintopic_endpoint_t *announced = dds_get_matched_publication_data(endpoint->entity, writer);
+    if (announced == NULL)
+    {
+        return;
+    }
+    void *data = NULL;
+    size_t size = 0;
+    if (dds_qget_userdata(announced->qos, &data, &size))
+    {
+        printf("announced %s %s\n", endpoint->topic, data == NULL ? "nothing" : (const char *)data);
+        dds_free(data);
+    }
+    dds_builtintopic_free_endpoint(announced);
+}
+
+static void Read(struct Endpoint *endpoint)
 {
     void *samples[1] = {NULL};
     dds_sample_info_t info;
     while (dds_take(endpoint->entity, samples, &info, 1, 1) == 1)
     {
+        if (info.valid_data && !endpoint->is_told)
+        {
+            endpoint->is_told = 1;
+            TellAnnounced(endpoint, info.publication_handle);
+        }
         if (info.valid_data && endpoint->is_setpoint)
         {
             const px4_msgs_msg_dds__TrajectorySetpoint_ *setpoint = samples[0];

@@ -25,6 +25,13 @@ TEST(DiscoveryNames, ParticipantsHaveTheRecordedUserData)
     EXPECT_EQ(MakeUserData(1, false), "rabit=1;incarnation=1;");
 }
 
+TEST(DiscoveryNames, EndpointsHaveTheRecordedUserData)
+{
+    EXPECT_EQ(EndpointUserData, "rabit=1;");
+    EXPECT_EQ(ParseUserData(BytesIn(std::string(EndpointUserData))), std::nullopt)
+        << "it is no participant's";
+}
+
 TEST(DiscoveryNames, TheRecordedUserDataIsThatOfANode)
 {
     const std::string withCard = "rabit=1;incarnation=7640891576956012808;card=2;";

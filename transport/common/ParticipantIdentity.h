@@ -9,9 +9,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace Rabit
 {
+
+// The USER_DATA of each writer and reader of a node. ROS 2 warns of each endpoint that has none, since it
+// looks for the hash of the type there (REP-2011). It accepts any list of `key=value;`.
+inline constexpr std::string_view EndpointUserData = "rabit=1;";
 
 struct ParticipantIdentity
 {

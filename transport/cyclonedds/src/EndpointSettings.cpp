@@ -1,6 +1,7 @@
 #include "EndpointSettings.h"
 
 #include "OpaqueType.h"
+#include "common/ParticipantIdentity.h"
 
 namespace Rabit::Cyclone
 {
@@ -25,6 +26,7 @@ Qos MakeEndpointQos(const TopicQos &qos, const std::vector<std::string> &partiti
     dds_qset_ignorelocal(result.get(), DDS_IGNORELOCAL_PARTICIPANT);
     const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
     dds_qset_data_representation(result.get(), 1, &representation);
+    dds_qset_userdata(result.get(), EndpointUserData.data(), EndpointUserData.size());
     // An empty list is written out as the default partition: an empty one would not match another make's `*`.
     std::vector<const char *> names;
     for (const auto &name : partitions)

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/ParticipantIdentity.h"
+
 namespace Rabit::FastDds
 {
 
@@ -45,6 +47,7 @@ void ApplyQos(const TopicQos &qos, const std::vector<std::string> &partitions, E
     // An empty list is written out as the default partition: an empty one would not match another make's `*`.
     std::vector<std::string> names = partitions.empty() ? std::vector<std::string>{""} : partitions;
     result.m_partition.names(names);
+    result.m_userData.data_vec({EndpointUserData.begin(), EndpointUserData.end()});
     result.data_sharing.off();
 }
 

@@ -1,0 +1,25 @@
+// What the announcements of writers and readers carry besides names and QoS.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "EndpointSettings.h"
+#include "common/ParticipantIdentity.h"
+
+namespace
+{
+
+template <typename EndpointQos>
+std::string UserDataOf(const EndpointQos &qos)
+{
+    const auto &data = qos.m_userData.data_vec();
+    return {data.begin(), data.end()};
+}
+
+TEST(EndpointUserData, IsInTheAnnouncementOfEachWriterAndReader)
+{
+    EXPECT_EQ(UserDataOf(Rabit::FastDds::MakeWriterQos({}, {})), Rabit::EndpointUserData);
+    EXPECT_EQ(UserDataOf(Rabit::FastDds::MakeReaderQos({}, {})), Rabit::EndpointUserData);
+}
+
+}  // namespace
