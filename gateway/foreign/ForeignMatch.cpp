@@ -129,6 +129,19 @@ std::string WhyNot(const ForeignRule &rule, const TopicQos &ours, const RemoteEn
     {
         return differs(TextOf(offered.Durability), TextOf(asked.Durability));
     }
+    if (theirs.IsExclusive)
+    {
+        return IsRead(rule) ? differs("of exclusive ownership", "shared ownership")
+                            : differs("shared ownership", "exclusive ownership");
+    }
+    if (!IsRead(rule) && theirs.HasDeadline)
+    {
+        return differs("none", "a deadline");
+    }
+    if (!IsRead(rule) && theirs.HasLiveliness)
+    {
+        return differs("none", "a liveliness with a lease or by hand");
+    }
     return "";
 }
 

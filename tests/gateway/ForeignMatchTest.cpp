@@ -132,6 +132,39 @@ TEST(ForeignMatch, NamesTheQosThatDoesNotFitATopicThatIsWritten)
         "a program that reads `rt/chatter` asks for transient local, this node offers volatile (mismatch)");
 }
 
+TEST(ForeignMatch, NamesADeadlineLivelinessAndOwnershipThatAReaderAsksFor)
+{
+    RemoteEndpoint due = Reader();
+    due.HasDeadline = true;
+    EXPECT_EQ(WhyNone(Written(), {due}),
+              "a program that reads `rt/chatter` asks for a deadline, this node offers none (mismatch)");
+    RemoteEndpoint live = Reader();
+    live.HasLiveliness = true;
+    EXPECT_EQ(
+        WhyNone(Written(), {live}),
+        "a program that reads `rt/chatter` asks for a liveliness with a lease or by hand, this node offers "
+        "none (mismatch)");
+    RemoteEndpoint exclusive = Reader();
+    exclusive.IsExclusive = true;
+    EXPECT_EQ(
+        WhyNone(Written(), {exclusive}),
+        "a program that reads `rt/chatter` asks for exclusive ownership, this node offers shared ownership "
+        "(mismatch)");
+}
+
+TEST(ForeignMatch, AWriterMayHaveADeadlineAndLivelinessButNoExclusiveOwnership)
+{
+    RemoteEndpoint writer = Writer();
+    writer.HasDeadline = true;
+    writer.HasLiveliness = true;
+    const TopicQos ours = ForeignMatch::FirstReaderQos(Read());
+    EXPECT_EQ(ForeignMatch::WhyNot(Read(), ours, writer), "");
+    writer.IsExclusive = true;
+    EXPECT_EQ(
+        ForeignMatch::WhyNot(Read(), ours, writer),
+        "a program that writes `rt/chatter` is of exclusive ownership, this node asks for shared ownership");
+}
+
 TEST(ForeignMatch, NamesTheOtherTypeAndThePartition)
 {
     RemoteEndpoint other = Writer();

@@ -162,6 +162,10 @@ TEST_P(Conformance, TellsOfTheEndpointsThatOthersHaveWhateverTheirTypeAndQos)
     EXPECT_EQ(read.Type, "Other::Type");
     EXPECT_EQ(read.Reliability, Reliability::BestEffort);
     EXPECT_EQ(read.Durability, Durability::Volatile);
+    for (const RemoteEndpoint &endpoint : {written, read})
+    {
+        EXPECT_FALSE(endpoint.HasDeadline || endpoint.HasLiveliness || endpoint.IsExclusive);
+    }
     EXPECT_THAT(reading->RemoteTopics(), testing::IsSupersetOf({TextTopic().Name, std::string("Other")}));
     writer.reset();
     EXPECT_TRUE(Until([&] { return reading->RemoteEndpointsOn(TextTopic().Name).empty(); }));

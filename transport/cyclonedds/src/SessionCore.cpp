@@ -118,6 +118,15 @@ RemoteEndpoint Described(const dds_builtintopic_endpoint_t &announced, const Wri
     {
         endpoint.Durability = Durability::TransientLocal;
     }
+    dds_duration_t period = DDS_INFINITY;
+    endpoint.HasDeadline = dds_qget_deadline(announced.qos, &period) && period != DDS_INFINITY;
+    dds_liveliness_kind_t liveliness = DDS_LIVELINESS_AUTOMATIC;
+    dds_duration_t lease = DDS_INFINITY;
+    endpoint.HasLiveliness = dds_qget_liveliness(announced.qos, &liveliness, &lease) &&
+                             (liveliness != DDS_LIVELINESS_AUTOMATIC || lease != DDS_INFINITY);
+    dds_ownership_kind_t ownership = DDS_OWNERSHIP_SHARED;
+    endpoint.IsExclusive =
+        dds_qget_ownership(announced.qos, &ownership) && ownership == DDS_OWNERSHIP_EXCLUSIVE;
     std::uint32_t count = 0;
     char **names = nullptr;
     if (dds_qget_partition(announced.qos, &count, &names))

@@ -97,7 +97,10 @@ RemoteEndpoint Described(const EndpointNews &news, const std::string &node)
             .Durability = news.Durability == dds::VOLATILE_DURABILITY_QOS ? Durability::Volatile
                                                                           : Durability::TransientLocal,
             .Partitions = news.Partitions,
-            .Node = node};
+            .Node = node,
+            .HasDeadline = news.HasDeadline,
+            .HasLiveliness = news.HasLiveliness,
+            .IsExclusive = news.IsExclusive};
 }
 
 }  // namespace

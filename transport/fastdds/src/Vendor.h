@@ -178,6 +178,9 @@ struct EndpointNews
     dds::ReliabilityQosPolicyKind Reliability{};
     dds::DurabilityQosPolicyKind Durability{};
     std::vector<std::string> Partitions;
+    bool HasDeadline = false;
+    bool HasLiveliness = false;  // other than automatic, or with a lease
+    bool IsExclusive = false;
 };
 
 // The default participant profile of a profiles file; std::nullopt if the vendor does not accept the file.

@@ -40,14 +40,19 @@ private:
     template <typename Proxy>
     void Tell(const Proxy &proxy, bool isRemoved)
     {
+        const auto &qos = proxy.m_qos;
         OnEndpoint({.Guid = proxy.guid(),
                     .IsWriter = std::is_same_v<Proxy, rtps::WriterProxyData>,
                     .IsRemoved = isRemoved,
                     .Topic = proxy.topicName().to_string(),
                     .Type = proxy.typeName().to_string(),
-                    .Reliability = proxy.m_qos.m_reliability.kind,
-                    .Durability = proxy.m_qos.m_durability.kind,
-                    .Partitions = proxy.m_qos.m_partition.getNames()});
+                    .Reliability = qos.m_reliability.kind,
+                    .Durability = qos.m_durability.kind,
+                    .Partitions = qos.m_partition.getNames(),
+                    .HasDeadline = !qos.m_deadline.period.is_infinite(),
+                    .HasLiveliness = qos.m_liveliness.kind != dds::AUTOMATIC_LIVELINESS_QOS ||
+                                     !qos.m_liveliness.lease_duration.is_infinite(),
+                    .IsExclusive = qos.m_ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS});
     }
 };
 

@@ -54,7 +54,11 @@ private:
                     .Type = info.type_name.to_string(),
                     .Reliability = info.reliability.kind,
                     .Durability = info.durability.kind,
-                    .Partitions = info.partition.getNames()});
+                    .Partitions = info.partition.getNames(),
+                    .HasDeadline = !info.deadline.period.is_infinite(),
+                    .HasLiveliness = info.liveliness.kind != dds::AUTOMATIC_LIVELINESS_QOS ||
+                                     !info.liveliness.lease_duration.is_infinite(),
+                    .IsExclusive = info.ownership.kind == dds::EXCLUSIVE_OWNERSHIP_QOS});
     }
 };
 

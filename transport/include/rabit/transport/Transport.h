@@ -343,6 +343,11 @@ struct RemoteEndpoint
     Rabit::Durability Durability = Rabit::Durability::Volatile;
     std::vector<std::string> Partitions{};  // as CreateWriter takes them
     std::string Node{};                     // empty if it does not belong to a Rabit node
+    // The QoS policies that endpoints of a session do not have (OMG DDS 1.4, 2.2.3). A writer of a session
+    // does not match a reader that requests one of the first two. Nothing matches an exclusive endpoint.
+    bool HasDeadline = false;
+    bool HasLiveliness = false;  // other than automatic, or with a lease
+    bool IsExclusive = false;    // OWNERSHIP
 };
 
 // Failures below the cut since the session was opened. The counters only rise.
