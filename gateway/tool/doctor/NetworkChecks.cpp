@@ -22,7 +22,7 @@ std::string Listed(const std::set<std::string> &list)
     {
         if (++count <= most)
         {
-            text += (text.empty() ? "" : ", ") + (entry.empty() ? "one without a name" : entry);
+            text += (text.empty() ? "" : ", ") + entry;
         }
     }
     return text + (count > most ? " and " + std::to_string(count - most) + " more" : "");

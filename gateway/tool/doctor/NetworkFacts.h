@@ -10,7 +10,7 @@ namespace Rabit::Tool::Doctor
 // The participants that announced themselves by multicast from one address.
 struct Voices
 {
-    std::set<std::string> Names;
+    std::set<std::string> Names;            // LabelOf each
     bool AreNodes = false;                  // at least one of them is a node of Rabit
     std::set<std::string> WithKeys{};       // those of them that take part in DDS Security
     std::set<std::string> NodesWithKeys{};  // those of these that are nodes of Rabit, or its tools

@@ -432,10 +432,11 @@ private:
         {
             Voices &from = voices[datagram.From];
             from.AreNodes = from.AreNodes || heard->IsNode;
-            AddTo(from.Names, heard->Name, MostNames);
-            if (heard->HasKeys && from.Names.contains(heard->Name))
+            const std::string label = LabelOf(*heard);
+            AddTo(from.Names, label, MostNames);
+            if (heard->HasKeys && from.Names.contains(label))
             {
-                from.WithKeys.insert(heard->Name);
+                from.WithKeys.insert(label);
                 if (heard->IsNode && _keyed.size() < MostParticipants)
                 {
                     _keyed[heard->Sender] = {ear.Domain, heard->Name, datagram.From};

@@ -1,6 +1,7 @@
 #include "doctor/RtpsCall.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "common/ParticipantIdentity.h"
 #include "common/RtpsReader.h"
@@ -53,6 +54,7 @@ void ReadParameters(RtpsReader list, bool littleEndian, HeardCall &heard)
             const auto bytes = value.Bytes(value.U32());
             heard.Name = isName ? Printable(bytes) : heard.Name;
             heard.IsNode = heard.IsNode || (isUserData && ParseUserData(bytes).has_value());
+            heard.IsRos = heard.IsRos || (isUserData && Printable(bytes).starts_with("enclave="));
         }
     }
 }
@@ -121,6 +123,22 @@ std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram)
                          }
                      });
     return heard;
+}
+
+std::string LabelOf(const HeardCall &heard)
+{
+    if (!heard.IsRos && !heard.Name.empty())
+    {
+        return heard.Name;
+    }
+    std::string prefix;
+    for (const std::uint8_t byte : heard.Sender)
+    {
+        constexpr std::string_view Digits = "0123456789abcdef";
+        prefix += Digits[byte >> 4];
+        prefix += Digits[byte & 15];
+    }
+    return (heard.IsRos ? "a program of ROS 2 (" : "a program without a name (") + prefix + ")";
 }
 
 std::vector<std::uint8_t> MakeCall(const ParticipantId &sender, std::array<std::uint8_t, 4> address,

@@ -22,6 +22,7 @@ struct HeardCall
     ParticipantId Sender{};
     std::string Name{};   // of the participant, if it announces itself here; printable, 64 characters at most
     bool IsNode = false;  // of Rabit
+    bool IsRos = false;   // of ROS 2, which names the enclave in the participant's USER_DATA
     bool HasKeys = false;  // it says that it takes part in DDS Security
     bool Announces = false;
     std::uint16_t Port = 0;  // at which it takes announcements for itself alone, over UDP and IPv4; 0: none
@@ -29,6 +30,10 @@ struct HeardCall
 };
 // Empty if the datagram is not RTPS.
 std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram);
+
+// Returns the name of a participant for people. Programs of ROS 2, and those without a name, have their GUID
+// prefix in it, so that each is counted: "a program of ROS 2 (0102030405060708090a0b0c)".
+std::string LabelOf(const HeardCall &heard);
 
 // Returns an announcement of a participant without writers and readers, which makes all others announce
 // themselves to it. They forget it after one second.

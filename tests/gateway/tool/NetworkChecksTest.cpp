@@ -225,9 +225,9 @@ TEST_F(NetworkChecks, ANodeThatDoesNotLetThisProgramInIsAProblemBesideOthersThat
 
 TEST_F(NetworkChecks, ProgramsThatAreNoNodesAreNeverAProblem)
 {
-    facts.Domains[8]["10.0.0.4"] = {{""}, false};
+    facts.Domains[8]["10.0.0.4"] = {{"rviz"}, false};
     EXPECT_EQ(OfDomains(config, facts, false)[0].How, Level::Note);
-    EXPECT_THAT(OfDomains(config, facts, false)[0].Text, HasSubstr("one without a name is in it"));
+    EXPECT_THAT(OfDomains(config, facts, false)[0].Text, HasSubstr("rviz is in it"));
 }
 
 }  // namespace

@@ -84,6 +84,24 @@ TEST(RtpsCall, TellsANodeByItsNameAndWhatItSaysOfItself)
     EXPECT_TRUE(heard->IsNode);
 }
 
+TEST(RtpsCall, TellsProgramsOfRosFromOneAnother)
+{
+    // The name is that of the enclave, or missing.
+    auto parameters = Parameter(0x62, "/");
+    const auto data = Parameter(0x2c, "enclave=/;");
+    std::copy(data.begin(), data.end(), std::back_inserter(parameters));
+    const auto heard = HeardIn(CallWith(parameters));
+    ASSERT_TRUE(heard);
+    EXPECT_TRUE(heard->IsRos);
+    EXPECT_EQ(LabelOf(*heard), "a program of ROS 2 (0102030405060708090a0b0c)");
+}
+
+TEST(RtpsCall, ANameIsTheLabelAndANamelessProgramHasItsPrefix)
+{
+    EXPECT_EQ(LabelOf(*HeardIn(CallWith(Parameter(0x62, "uav1")))), "uav1");
+    EXPECT_EQ(LabelOf(*HeardIn(CallWith({}))), "a program without a name (0102030405060708090a0b0c)");
+}
+
 TEST(RtpsCall, TellsOneThatHasKeys)
 {
     auto parameters = Parameter(0x62, "uav1");
