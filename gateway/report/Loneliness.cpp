@@ -38,6 +38,14 @@ std::string WhatGoesOut(const GatewayConfig &config, const TransportCounters &co
     return config.BackendConfig.empty() ? "multicast goes out" : "multicast is on";
 }
 
+// Over shared memory, participants of one host do not use UDP between them.
+std::string WhatSharedMemoryNeeds(const GatewayConfig &config)
+{
+    return config.SharedMemory ? "; shared_memory is on, so a node of this host is heard only if both have "
+                                 "the same user and the same /dev/shm"
+                               : "";
+}
+
 // True if foreign programs may be all that the node is there for.
 bool IsForPrograms(const GatewayConfig &config)
 {
@@ -87,7 +95,7 @@ std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeersOve
             std::to_string(config.Domain) + " on " + Listed(config.Interfaces, "all interfaces") + " for " +
             std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Patience).count()) + " s; " +
             WhatGoesOut(config, counters) + "; peers: " + Listed(config.Peers, "none") +
-            " (docs/how_to/connect.md)",
+            WhatSharedMemoryNeeds(config) + " (docs/how_to/connect.md)",
         true};
 }
 

@@ -69,6 +69,13 @@ TEST_F(LonelinessTest, NamesThePeersThatAreListed)
                                           "uav2.local ("));
 }
 
+TEST_F(LonelinessTest, NamesWhatSharedMemoryNeeds)
+{
+    config.SharedMemory = true;
+    EXPECT_THAT(ReasonAt(110s), HasSubstr("peers: none; shared_memory is on, so a node of this host is heard "
+                                          "only if both have the same user and the same /dev/shm (docs"));
+}
+
 TEST_F(LonelinessTest, SaysWhenNothingGoesOut)
 {
     counters.DiscoveryBytes = 0;
