@@ -1,6 +1,8 @@
 #include "common/SettingsCheck.h"
 
+#include <arpa/inet.h>
 #include <net/if.h>
+#include <netinet/in.h>
 
 #include <string>
 
@@ -15,6 +17,12 @@ namespace
 constexpr std::size_t MaxNodeName = 200;
 constexpr int MaxDomain = 232;
 
+bool IsIpv6(const std::string &text)
+{
+    in6_addr address{};
+    return inet_pton(AF_INET6, text.substr(0, text.find('%')).c_str(), &address) == 1;
+}
+
 // True if `text` is an address, or could be the name of a Linux interface.
 bool IsInterface(const std::string &text)
 {
@@ -22,7 +30,7 @@ bool IsInterface(const std::string &text)
     {
         return IsAddress(text);
     }
-    return !text.empty() && text.size() < IFNAMSIZ &&
+    return !text.empty() && text.size() < IFNAMSIZ && !IsIpv6(text) &&
            text.find_first_of(std::string("/ \t\r\n\0", 6)) == std::string::npos;
 }
 
@@ -47,7 +55,8 @@ std::vector<SettingsProblem> FindImpossible(const TransportSettings &settings)
     for (const std::string &interface : settings.Interfaces)
     {
         refuse(!IsInterface(interface), "interfaces", interface,
-               "the interface " + interface + " is neither an IPv4 address nor the name of an interface");
+               "the interface " + interface + " is neither an IPv4 address nor the name of an interface" +
+                   (IsIpv6(interface) ? ": nodes use IPv4" : ""));
     }
     for (const std::string &peer : settings.Peers)
     {

@@ -232,6 +232,9 @@ TEST(Settings, OutOfRangeIsRefused)
     EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Domain = 233; })), TransportError);
     EXPECT_THROW(CheckSettings(bad([](auto &s) { s.MaxDatagram = 999; })), TransportError);
     EXPECT_THROW(CheckSettings(bad([](auto &s) { s.MaxDatagram = 65001; })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Interfaces = {"fe80::1"}; })), TransportError);
+    EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Interfaces = {"::1%eth0"}; })), TransportError);
+    EXPECT_NO_THROW(CheckSettings(bad([](auto &s) { s.Interfaces = {"eth0:1"}; }))) << "a label of Linux";
     EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Lease = s.AnnouncementPeriod; })), TransportError);
     EXPECT_THROW(CheckSettings(bad([](auto &s) { s.AnnouncementPeriod = std::chrono::milliseconds(0); })),
                  TransportError);
