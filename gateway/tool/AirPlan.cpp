@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "air/AirCost.h"
@@ -35,7 +36,10 @@ public:
     {
         for (const GatewayConfig &other : fleet)
         {
-            if (other.Domain == config.Domain && other.Node != config.Node)
+            const bool isKnown =
+                std::any_of(_others.begin(), _others.end(),
+                            [&other](const GatewayConfig *one) { return one->Node == other.Node; });
+            if (other.Domain == config.Domain && other.Node != config.Node && !isKnown)
             {
                 _others.push_back(&other);
             }
@@ -298,6 +302,19 @@ bool IsAmong(const std::vector<std::string> &names, const std::string &stated)
                        });
 }
 
+std::vector<GatewayConfig> EachPathOf(const std::vector<GatewayConfig> &fleet)
+{
+    std::vector<GatewayConfig> paths;
+    for (const GatewayConfig &config : fleet)
+    {
+        std::vector<GatewayConfig> ofNode = PathConfigsOf(config);
+        std::for_each(ofNode.begin() + 1, ofNode.end(),
+                      [](GatewayConfig &later) { later.Foreign.clear(); });  // the first path has them
+        std::move(ofNode.begin(), ofNode.end(), std::back_inserter(paths));
+    }
+    return paths;
+}
+
 std::vector<AirPlan> AirPlansOf(const std::vector<GatewayConfig> &fleet, const AirPlanInput &input)
 {
     std::vector<AirPlan> plans;
@@ -319,8 +336,10 @@ std::string WhyAboveBudget(const AirPlan &plan)
                                        [](const AirItem &one, const AirItem &other)
                                        { return one.BytesPerSecond() < other.BytesPerSecond(); });
     const auto text = [](double bytes) { return std::to_string(std::llround(bytes)) + " B/s"; };
-    return "the budget is " + text(*budget) + ", and " + text(plan.BytesPerSecond()) +
-           " would go on the air, most of it " + most->What + " with " + text(most->BytesPerSecond()) +
+    const std::string path = plan.Path();
+    return (path.empty() ? "" : "path " + path + ": ") + "the budget is " + text(*budget) + ", and " +
+           text(plan.BytesPerSecond()) + " would go on the air" + (path.empty() ? "" : " if it carries all") +
+           ", most of it " + most->What + " with " + text(most->BytesPerSecond()) +
            "; a max_rate, or a larger budget";
 }
 

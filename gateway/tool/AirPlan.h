@@ -54,6 +54,9 @@ struct AirPlan
     const GatewayConfig *Config = nullptr;
     std::vector<AirItem> Items;
 
+    // Of several paths of a node, the one that is planned; empty: the node has no paths.
+    std::string Path() const { return Config->Paths.empty() ? "" : Config->Paths.front().Name; }
+
     // The sum over the items whose rate is known. An item of unknown size counts its headers alone.
     double BytesPerSecond() const;
     // Lists missing numbers, as `rate of Findings`, `size of Findings`.
@@ -67,8 +70,12 @@ std::vector<std::string> NamesIn(const std::vector<GatewayConfig> &fleet, bool t
 // True if a stated name, such as `uav1/Pose`, fits one of `names`.
 bool IsAmong(const std::vector<std::string> &names, const std::string &stated);
 
-// Returns a plan for each node of `fleet`, in its order; `fleet` must outlive them. If a node is alone in its
-// domain, one reader is assumed for each of its messages.
+// Returns the nodes, with an entry for each path of a node that has some, the best path first.
+std::vector<GatewayConfig> EachPathOf(const std::vector<GatewayConfig> &fleet);
+
+// Returns a plan for each entry of `fleet`, in its order; `fleet` must outlive them. Entries with one name
+// are the paths of one node, each of which is planned as if it carried all. If a node is alone in its domain,
+// one reader is assumed for each of its messages.
 std::vector<AirPlan> AirPlansOf(const std::vector<GatewayConfig> &fleet, const AirPlanInput &input);
 
 // Says by how much the node exceeds its budget, and names the largest item; empty if it fits, or has no

@@ -94,6 +94,7 @@ bool ShowJson(const AirPlan &plan)
                              {"bytes_per_s", item.BytesPerSecond()}});
     }
     return Output::Object(Json{{"node", plan.Config->Node},
+                               {"path", plan.Path()},
                                {"file", plan.Config->File},
                                {"air_bytes_per_s", plan.BytesPerSecond()},
                                {"budget_bytes_per_s", Number(plan.Config->Radio.Budget)},
@@ -119,6 +120,21 @@ std::string NotKnown(const AirPlan &plan)
     return text.empty() ? "-" : text;
 }
 
+// Returns `uav1`, or `uav1 by modem`.
+std::string LabelOf(const AirPlan &plan)
+{
+    return plan.Config->Node + (plan.Path().empty() ? "" : " by " + plan.Path());
+}
+
+// True for the plan that holds while all paths work. The later ones carry all only if the better ones fail.
+bool IsBestPath(const AirPlan &plan, const std::vector<AirPlan> &plans)
+{
+    const auto first =
+        std::find_if(plans.begin(), plans.end(),
+                     [&plan](const AirPlan &one) { return one.Config->Node == plan.Config->Node; });
+    return &*first == &plan;
+}
+
 std::vector<std::vector<std::string>> Summary(const std::vector<AirPlan> &plans)
 {
     std::vector<std::vector<std::string>> rows{{"NODE", "ON THE AIR", "BUDGET", "OF IT", "NOT KNOWN"}};
@@ -126,12 +142,12 @@ std::vector<std::vector<std::string>> Summary(const std::vector<AirPlan> &plans)
     for (const AirPlan &plan : plans)
     {
         const double budget = Number(plan.Config->Radio.Budget);
-        sum += plan.BytesPerSecond();
-        rows.push_back({plan.Config->Node, NumberText(plan.BytesPerSecond(), 0, " B/s"),
+        sum += IsBestPath(plan, plans) ? plan.BytesPerSecond() : 0.0;
+        rows.push_back({LabelOf(plan), NumberText(plan.BytesPerSecond(), 0, " B/s"),
                         NumberText(budget, 0, " B/s"),
                         NumberText(100.0 * plan.BytesPerSecond() / budget, 0, " %"), NotKnown(plan)});
     }
-    if (plans.size() > 1)
+    if (rows.size() > 2)
     {
         rows.push_back({"in all", NumberText(sum, 0, " B/s")});
     }
@@ -145,7 +161,7 @@ std::vector<std::vector<std::string>> Details(const std::vector<AirPlan> &plans)
     {
         for (const AirItem &item : plan.Items)
         {
-            rows.push_back({plan.Config->Node, item.What,
+            rows.push_back({LabelOf(plan), item.What,
                             NumberText(item.Bytes, 0, item.SizeKnown ? " B" : " B and more"),
                             NumberText(Number(item.Rate), 2, " Hz"), std::to_string(item.Copies),
                             NumberText(item.Rate ? item.BytesPerSecond() : Number({}), 0, " B/s")});
@@ -203,7 +219,8 @@ int Run(const Options &options)
         Output::Talk(unknown);
         return Usage;
     }
-    const std::vector<AirPlan> plans = AirPlansOf(fleet, input);
+    const std::vector<GatewayConfig> paths = EachPathOf(fleet);
+    const std::vector<AirPlan> plans = AirPlansOf(paths, input);
     for (const AirPlan &plan : plans)
     {
         if (const std::string why = WhyAboveBudget(plan); !why.empty())
@@ -211,7 +228,8 @@ int Run(const Options &options)
             FleetCheck::Add(findings, {.File = plan.Config->File,
                                        .Line = FleetCheck::LineIn(*plan.Config, "radio.budget"),
                                        .Nodes = {plan.Config->Node},
-                                       .Text = why});
+                                       .Text = why,
+                                       .IsProblem = IsBestPath(plan, plans)});
         }
         for (const std::string &large : LargerThanASecond(plan))
         {

@@ -183,6 +183,32 @@ TEST(AirPlan, TheFirstStatementThatFitsHolds)
     EXPECT_EQ(stated.Of("ground", "Health"), std::nullopt);
 }
 
+TEST(AirPlan, EachPathOfANodeIsPlannedAsIfItCarriedAll)
+{
+    GatewayConfig two = NodeOf("a");
+    two.Paths = {{.Name = "mesh"}, {.Name = "modem"}};
+    two.Paths[1].Radio.Budget = 100.0;
+    const std::vector<GatewayConfig> fleet = EachPathOf({two, NodeOf("b")});
+    ASSERT_EQ(fleet.size(), 3u);
+    const auto plans = AirPlansOf(fleet, InputOf(10, 40));
+    EXPECT_EQ(plans[0].Path(), "mesh");
+    EXPECT_EQ(WhyAboveBudget(plans[0]), "") << "no budget";
+    EXPECT_THAT(WhyAboveBudget(plans[1]), HasSubstr("path modem: the budget is 100 B/s, and "));
+    EXPECT_EQ(plans[2].Path(), "");
+}
+
+TEST(AirPlan, ANodeWithSeveralPathsIsOneReader)
+{
+    GatewayConfig two = NodeOf("a");
+    two.Paths = {{.Name = "mesh"}, {.Name = "modem"}};
+    GatewayConfig alone = NodeOf("b");
+    alone.Multicast = false;
+    const std::vector<GatewayConfig> fleet = EachPathOf({two, alone});
+    const std::vector<GatewayConfig> plain{NodeOf("a"), alone};
+    EXPECT_EQ(Of(AirPlansOf(fleet, InputOf(10, 40))[2], "Pose"),
+              Of(AirPlansOf(plain, InputOf(10, 40))[1], "Pose"));
+}
+
 TEST(AirPlan, WhatExceedsTheBudgetIsToldWithWhatTakesMost)
 {
     std::vector<GatewayConfig> fleet{NodeOf("a")};

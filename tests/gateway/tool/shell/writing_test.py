@@ -48,7 +48,7 @@ def what_a_fleet_puts_on_the_air_is_checked_against_its_budgets(rabit):
         done = check(rabit, *fleet, "--rate", "Pose=5")
         assert done.returncode == 0, done
         plan = next(row for row in map(json.loads, done.stdout.splitlines()) if row.get("node") == "uav1")
-        assert keys(plan) == ["node", "file", "air_bytes_per_s", "budget_bytes_per_s", "not_known", "items"], plan
+        assert keys(plan) == ["node", "path", "file", "air_bytes_per_s", "budget_bytes_per_s", "not_known", "items"], plan
         assert plan["budget_bytes_per_s"] == 1000 and 740 < plan["air_bytes_per_s"] < 1000, plan
         assert "rate of Pose" not in plan["not_known"] and "rate and size of Findings" in plan["not_known"], plan
         pose = next(item for item in plan["items"] if item["what"] == "Pose")
