@@ -50,6 +50,29 @@ std::string NameIn(std::span<const std::uint8_t> payload)
     return name;
 }
 
+// The addresses at which a participant can be reached, as its announcement has them.
+std::vector<HostAddress> HostsIn(std::span<const std::uint8_t> payload)
+{
+    constexpr std::uint32_t UdpOverIpv4 = 1;
+    constexpr std::size_t LocatorSize = 24;
+    constexpr std::size_t Most = 64;  // as the guard accepts
+    std::vector<HostAddress> hosts;
+    VisitParameters(payload,
+                    [&](const ListParameter &parameter)
+                    {
+                        const bool isOwn = parameter.Id == Parameters::MetatrafficUnicastLocator ||
+                                           parameter.Id == Parameters::DefaultUnicastLocator;
+                        if (isOwn && parameter.Value.size() == LocatorSize && hosts.size() < Most &&
+                            RtpsReader(parameter.Value, IsLittleEndianList(payload)).U32() == UdpOverIpv4)
+                        {
+                            HostAddress &host = hosts.emplace_back();
+                            const auto address = parameter.Value.last(host.size());
+                            std::copy(address.begin(), address.end(), host.begin());
+                        }
+                    });
+    return hosts;
+}
+
 }  // namespace
 
 bool CardReplay::Put(const GuidPrefix &peer, std::span<const std::uint8_t> card, TimePoint now)
@@ -82,6 +105,7 @@ bool CardReplay::Put(const GuidPrefix &peer, std::span<const std::uint8_t> card,
     PutLease(payload, std::chrono::duration_cast<std::chrono::milliseconds>(_memory));
     Peer &known = _peers[peer];
     known.Name = NameIn(payload);
+    known.Hosts = HostsIn(payload);
     known.Header.assign(card.begin(), card.begin() + RtpsHeaderSize);
     known.Participant = std::move(participant);
     std::map<EntityId, std::set<EntityId>> present;
@@ -108,6 +132,15 @@ bool CardReplay::Put(const GuidPrefix &peer, std::span<const std::uint8_t> card,
     }
     known.Retry.Begin(now);
     return true;
+}
+
+bool CardReplay::IsAt(const GuidPrefix &peer, const HostAddress &host) const
+{
+    constexpr std::uint8_t Loopback = 127;
+    const auto found = _peers.find(peer);
+    return found != _peers.end() &&
+           (host[0] == Loopback || std::find(found->second.Hosts.begin(), found->second.Hosts.end(), host) !=
+                                       found->second.Hosts.end());
 }
 
 // If the implementation acknowledges nothing, announcements of endpoints that are gone are dropped at the

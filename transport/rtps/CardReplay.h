@@ -60,6 +60,8 @@ public:
     std::string NameOf(const GuidPrefix &peer) const;
     std::vector<GuidPrefix> Peers() const;
     std::size_t Size() const { return _peers.size(); }
+    // True if the peer's card names that address, or if the address is of this host (guard/PeerVoice.h).
+    bool IsAt(const GuidPrefix &peer, const HostAddress &host) const;
     // Bytes kept of the peer's card.
     std::size_t BytesOf(const GuidPrefix &peer) const;
 
@@ -104,6 +106,7 @@ private:
         std::vector<std::uint8_t> Header;
         std::vector<std::uint8_t> Participant;  // its announcement
         std::string Name;                       // in it
+        std::vector<HostAddress> Hosts;         // in it
         std::int64_t Announced = 0;             // number of its announcement, counted from 1
         std::map<EntityId, Stream> Streams;
         bool IsKnown = false;  // the implementation has answered since the last retry

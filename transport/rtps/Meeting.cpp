@@ -89,7 +89,9 @@ bool Meeting::Received(std::span<const std::uint8_t> datagram, const HostAddress
         return true;
     }
     // Before its card is there, nothing tells where a participant is. The card does, whoever sends it.
-    if (!isKnownAt && _replay.Has(message->From) && !IsThere(message->From, from))
+    // Until the guard has seen the replay it does not know either, so the card is asked.
+    if (!isKnownAt && _replay.Has(message->From) && !_replay.IsAt(message->From, from) &&
+        !IsThere(message->From, from))
     {
         return false;
     }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <queue>
@@ -559,6 +560,27 @@ TEST(Meeting, ACardThatCameFromElsewhereIsNotBelievedBeforeItCameOften)
     EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
     EXPECT_FALSE(meeting.Received(summary, elsewhere, false, now));
     EXPECT_TRUE(meeting.Received(summary, elsewhere, false, now));
+}
+
+TEST(Meeting, AParticipantSpeaksFromAllAddressesThatItsCardNamesBeforeTheGuardKnowsIt)
+{
+    Bytes card = CardOf(Name(7), {1, 2});
+    const auto named =
+        std::search(card.begin(), card.end(), RtpsBytes::SenderHost.begin(), RtpsBytes::SenderHost.end());
+    ASSERT_NE(named, card.end());
+    const HostAddress second{10, 0, 1, 1};
+    std::copy(second.begin(), second.end(), named);
+    const Bytes packed = PackCard(card);
+    CardMessage message{.From = Name(7), .Summary = SummaryOf(packed)};
+    message.HasPart = true;
+    message.Bytes = packed;
+    const Bytes said = WriteCardMessage(message);
+    Meeting meeting({.Period = 10s, .Memory = 4h});
+    const TimePoint now{1h};
+    EXPECT_TRUE(meeting.Received(said, Host, false, now));
+    EXPECT_TRUE(meeting.Received(said, second, false, now));
+    EXPECT_TRUE(meeting.Received(said, HostAddress{127, 0, 0, 9}, false, now)) << "this host";
+    EXPECT_FALSE(meeting.Received(said, HostAddress{10, 0, 0, 66}, false, now));
 }
 
 TEST(Meeting, ACardThatWasHeldUpForLongBehindAGoodbyeBringsNobodyBack)
