@@ -141,7 +141,8 @@ private:
         }
     }
 
-    // A message that comes from another node has one source.
+    // A message that comes from another node has one source. The pattern `*` names no node: a program may
+    // stand beside the nodes under a name of its own.
     void CheckNoMirror(const ForeignRule &rule) const
     {
         const std::size_t slash = rule.Local.find('/');
@@ -153,7 +154,9 @@ private:
         const std::string message = rule.Local.substr(slash + 1);
         for (const SubscribeRule &mirror : _config.Subscribe)
         {
-            if (mirror.Message == message && MatchesAny(mirror.From, node))
+            const auto names = [&node](const std::string &pattern)
+            { return pattern != "*" && MatchesPattern(pattern, node); };
+            if (mirror.Message == message && std::any_of(mirror.From.begin(), mirror.From.end(), names))
             {
                 Fail(rule.Line, "`" + rule.Local + "` is the message of the node `" + node +
                                     "` that `subscribe` brings" +

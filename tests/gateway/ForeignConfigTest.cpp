@@ -210,6 +210,7 @@ TEST_F(ForeignConfigTest, RefusesTheNameOfAMessageThatComesFromAnotherNode)
                   "expected another name");
     EXPECT_EQ(ErrorOf("subscribe:\n  - {message: Pose, type: Uav::Pose, from: [ground]}\n" + entry),
               "no error");
+    EXPECT_EQ(ErrorOf("subscribe:\n  - {message: Pose, type: Uav::Pose}\n" + entry), "no error");
 }
 
 // Returns the error of a rule that a program made, as if it stood in line 7.

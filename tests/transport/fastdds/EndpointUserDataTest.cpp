@@ -1,4 +1,4 @@
-// What the announcements of writers and readers carry besides names and QoS.
+// The USER_DATA in the announcements of writers and readers.
 #include <gtest/gtest.h>
 
 #include <string>
