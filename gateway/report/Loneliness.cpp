@@ -46,6 +46,15 @@ std::string WhatSharedMemoryNeeds(const GatewayConfig &config)
                                : "";
 }
 
+// Until then nothing of another node gets to the gateway, however much is heard.
+std::string WhatKeysNeed(const GatewayConfig &config)
+{
+    return config.Security
+               ? "; with keys, a node is heard once both have exchanged theirs, which takes longer "
+                 "on a slow channel"
+               : "";
+}
+
 // True if foreign programs may be all that the node is there for.
 bool IsForPrograms(const GatewayConfig &config)
 {
@@ -95,7 +104,7 @@ std::optional<Gateway::Problem> Look(const GatewayConfig &config, const PeersOve
             std::to_string(config.Domain) + " on " + Listed(config.Interfaces, "all interfaces") + " for " +
             std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Patience).count()) + " s; " +
             WhatGoesOut(config, counters) + "; peers: " + Listed(config.Peers, "none") +
-            WhatSharedMemoryNeeds(config) + " (docs/how_to/connect.md)",
+            WhatSharedMemoryNeeds(config) + WhatKeysNeed(config) + " (docs/how_to/connect.md)",
         true};
 }
 

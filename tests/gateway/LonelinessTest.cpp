@@ -21,6 +21,7 @@ using namespace std::chrono_literals;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 class LonelinessTest : public ::testing::Test
 {
@@ -74,6 +75,14 @@ TEST_F(LonelinessTest, NamesWhatSharedMemoryNeeds)
     config.SharedMemory = true;
     EXPECT_THAT(ReasonAt(110s), HasSubstr("peers: none; shared_memory is on, so a node of this host is heard "
                                           "only if both have the same user and the same /dev/shm (docs"));
+}
+
+TEST_F(LonelinessTest, SaysThatKeysAreExchangedFirst)
+{
+    EXPECT_THAT(ReasonAt(110s), Not(HasSubstr("keys")));
+    config.Security.emplace();
+    EXPECT_THAT(ReasonAt(110s), HasSubstr("peers: none; with keys, a node is heard once both have exchanged "
+                                          "theirs, which takes longer on a slow channel (docs"));
 }
 
 TEST_F(LonelinessTest, SaysWhenNothingGoesOut)
