@@ -3,6 +3,7 @@
 #include <rabit/simulated/SimulatedNetwork.h>
 #include <rabit/simulated/SimulatedTransport.h>
 #include <rabit/transport/DiscoveryTurns.h>
+#include <rabit/transport/FleetMember.h>
 #include <rabit/transport/Transport.h>
 #include <rabit/transport/TransportFactory.h>
 #ifdef RABIT_MANUAL_FASTDDS
@@ -18,6 +19,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace
@@ -91,6 +93,21 @@ TEST(NetworkExample, AProgramChoosesABackendByName)
 #endif
 }
 // [/factory]
+
+// [member]
+TEST(NetworkExample, AMemberOfAFleetNeedsKeysThatBelongTogether)
+{
+    const Rabit::MemberKeys keys{};  // the content of a key folder; here, nothing
+    Rabit::MadeMember made = Rabit::MakeFleetMember(keys);
+    EXPECT_EQ(made.Error, "the certificate is damaged");
+
+    // One member serves all sessions of a node.
+    const std::shared_ptr<Rabit::FleetMember> member = std::move(made.Member);
+    Rabit::TransportSettings settings;
+    settings.Member = member;
+    EXPECT_EQ(settings.Member, nullptr);
+}
+// [/member]
 
 // [turns]
 // Discovery that sends when the holder of the session lets it.

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <ctime>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "keys/OpenSsl.h"
-#include "keys/Secret.h"
+#include "keys/PrivateKeyPem.h"
 #include "keys/SubjectName.h"
 
 namespace Rabit::Keys
@@ -19,9 +18,6 @@ struct Validity
     std::time_t From = 0;
     std::time_t To = 0;
 };
-
-// Returns the passphrase of an encrypted private key in `file`; may throw KeysError.
-using AskPassphrase = std::function<Secret(const std::string &file)>;
 
 KeyPtr MakeKey();
 
@@ -39,14 +35,10 @@ RevocationsPtr MakeRevocations(const X509_CRL *before, const std::vector<const X
                                const X509 &authority, EVP_PKEY &authorityKey, std::time_t now);
 
 std::string PemOf(const X509 &certificate);
-// The secret half as PKCS #8, encrypted (scrypt and AES-256) unless the passphrase is empty.
-std::string PemOf(const EVP_PKEY &key, std::string_view passphrase = {});
 std::string PemOf(const X509_CRL &revocations);
 
 // Throw KeysError, which names `file`.
 CertificatePtr ReadCertificate(std::string_view pem, const std::string &file);
-// Without `ask`, an encrypted key is refused: at the start of a node no person is there to type.
-KeyPtr ReadKey(std::string_view pem, const std::string &file, const AskPassphrase &ask = {});
 // Reads the file.
 CertificatePtr CertificateIn(const std::string &file);
 RevocationsPtr ReadRevocations(std::string_view pem, const std::string &file);

@@ -1,15 +1,11 @@
 #include "keys/FleetKeys.h"
 
-#include <fcntl.h>
-#include <rabit/base/NaturalOrder.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <filesystem>
 
 #include "keys/KeyFiles.h"
 #include "keys/KeysError.h"
+#include "keys/NodeFolders.h"
 #include "keys/SignedDocument.h"
 
 namespace Rabit::Keys
@@ -21,39 +17,12 @@ namespace fs = std::filesystem;
 
 constexpr const char *IssuedFolder = "issued";
 constexpr const char *RevokedFile = "revoked.pem";
-constexpr const char *OldEnding = ".old";
 constexpr std::time_t Day = 24 * 60 * 60;
 
 // Begins a day before now, for clocks that are slow.
 Validity ValidityFrom(const FleetKeys::Period &period)
 {
     return {period.Now - Day, period.Now + period.Days * Day};
-}
-
-void MoveTo(const std::string &from, const std::string &to)
-{
-    std::error_code error;
-    fs::rename(from, to, error);
-    if (error)
-    {
-        throw KeysError("cannot rename " + from + " to " + to + ": " + error.message());
-    }
-}
-
-int LockOf(const std::string &folder)
-{
-    const int lock = ::open((folder + "/" + AuthorityFolder).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (lock < 0)
-    {
-        throw KeysError("there are no authorities of a fleet in " + folder + "; `rabit keys init " + folder +
-                        "` makes them");
-    }
-    if (::flock(lock, LOCK_EX | LOCK_NB) != 0)
-    {
-        ::close(lock);
-        throw KeysError("somebody else is changing the keys in " + folder + " now");
-    }
-    return lock;
 }
 
 }  // namespace
@@ -93,7 +62,7 @@ void FleetKeys::Init(const std::string &folder, const std::string &fleet, const 
                       PemOf(*MakeRevocations(nullptr, {}, *certificate, *key, period.Now)));
         }
     }
-    MoveTo(made, folder + "/" + AuthorityFolder);
+    MoveFolder(made, folder + "/" + AuthorityFolder);
 }
 
 bool FleetKeys::IsFleet(const std::string &folder)
@@ -102,57 +71,12 @@ bool FleetKeys::IsFleet(const std::string &folder)
 }
 
 FleetKeys::FleetKeys(const std::string &folder, AskPassphrase ask)
-    : _folder(folder), _ask(std::move(ask)), _lock(LockOf(folder))
+    : _folder(folder), _ask(std::move(ask)), _lock(folder)
 {
-    try
-    {
-        const CertificatePtr identity = Authority("identity");
-        _fleet = FleetOf(*identity);
-        _validity = ValidityOf(*identity);
-        FinishRenewals();
-    }
-    catch (...)
-    {
-        ::close(_lock);
-        throw;
-    }
-}
-
-FleetKeys::~FleetKeys()
-{
-    ::close(_lock);
-}
-
-std::string FleetKeys::OldOf(const std::string &node) const
-{
-    return _folder + "/." + node + OldEnding;
-}
-
-// Renew moves a folder to `.NODE.old` before the new one takes its place, and then removes it.
-void FleetKeys::FinishRenewals() const
-{
-    std::vector<std::string> left;
-    for (const auto &entry : fs::directory_iterator(_folder))
-    {
-        const std::string name = entry.path().stem().string();
-        const std::string node = name.starts_with('.') ? name.substr(1) : "";
-        if (entry.path().extension() == OldEnding && IsFolderName(node) && node != AuthorityFolder)
-        {
-            left.push_back(node);
-        }
-    }
-    for (const std::string &node : left)
-    {
-        if (!fs::exists(FolderOf(node)))
-        {
-            MoveTo(OldOf(node), FolderOf(node));
-        }
-        else
-        {
-            std::error_code ignored;
-            fs::remove_all(OldOf(node), ignored);
-        }
-    }
+    const CertificatePtr identity = Authority("identity");
+    _fleet = FleetOf(*identity);
+    _validity = ValidityOf(*identity);
+    FinishReplacements(_folder);
 }
 
 CertificatePtr FleetKeys::Authority(const char *name) const
@@ -173,18 +97,7 @@ EVP_PKEY &FleetKeys::AuthorityKey(const char *name) const
 
 std::vector<std::string> FleetKeys::Nodes() const
 {
-    std::vector<std::string> nodes;
-    for (const auto &entry : fs::directory_iterator(_folder))
-    {
-        const std::string name = entry.path().filename().string();
-        if (entry.is_directory() && name != AuthorityFolder && IsFolderName(name) &&
-            fs::exists(NodeFiles(entry.path().string()).Certificate))
-        {
-            nodes.push_back(name);
-        }
-    }
-    std::sort(nodes.begin(), nodes.end(), NaturalOrder());
-    return nodes;
+    return FoldersWith(_folder, "certificate.pem");
 }
 
 FleetKeys::Request FleetKeys::RequestOf(const std::string &node) const
@@ -409,9 +322,9 @@ void FleetKeys::Add(const Request &request, const Period &period, const SigningR
     {
         throw KeysError(folder + " is there already: nothing is changed; `rabit keys renew` makes new ones");
     }
-    const std::string made = _folder + "/." + request.Node + ".new";
+    const std::string made = NewFolderOf(_folder, request.Node);
     Make(made, request, period, KeyFor(request.Node, signing).get());
-    MoveTo(made, folder);
+    MoveFolder(made, folder);
 }
 
 void FleetKeys::Renew(const Request &request, const Period &period, const SigningRequest *signing) const
@@ -422,14 +335,8 @@ void FleetKeys::Renew(const Request &request, const Period &period, const Signin
     {
         throw KeysError("there is no folder " + folder + "; `rabit keys add` makes one");
     }
-    const std::string made = _folder + "/." + request.Node + ".new";
-    const std::string old = OldOf(request.Node);
-    Make(made, request, period, KeyFor(request.Node, signing).get());
-    std::error_code ignored;
-    fs::remove_all(old, ignored);
-    MoveTo(folder, old);
-    MoveTo(made, folder);
-    fs::remove_all(old, ignored);
+    Make(NewFolderOf(_folder, request.Node), request, period, KeyFor(request.Node, signing).get());
+    ReplaceFolder(_folder, request.Node);
 }
 
 std::size_t FleetKeys::RevokeFiles(const std::vector<std::string> &files, std::time_t now) const

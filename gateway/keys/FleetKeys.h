@@ -8,6 +8,7 @@
 
 #include "keys/Access.h"
 #include "keys/Certificates.h"
+#include "keys/NodeFolders.h"
 #include "keys/NodeKeys.h"
 #include "keys/SigningRequest.h"
 
@@ -42,9 +43,6 @@ public:
 
     // `ask` is called before the first signature, if the private keys of the authorities are encrypted.
     explicit FleetKeys(const std::string &folder, AskPassphrase ask = {});
-    ~FleetKeys();
-    FleetKeys(const FleetKeys &) = delete;
-    FleetKeys &operator=(const FleetKeys &) = delete;
 
     const std::string &Fleet() const { return _fleet; }
     std::time_t EndsAt() const { return _validity.To; }
@@ -86,9 +84,6 @@ private:
     // there is one, else the node's own; null: the authorities make a new one.
     KeyPtr KeyFor(const std::string &node, const SigningRequest *signing) const;
     unsigned NextNumber(const Request &request) const;
-    // The place of a node's folder while a new one replaces it.
-    std::string OldOf(const std::string &node) const;
-    void FinishRenewals() const;
     // Makes the folder with a certificate for that public key; null: with a private key of its own.
     void Make(const std::string &folder, const Request &request, const Period &period,
               EVP_PKEY *publicKey) const;
@@ -96,7 +91,7 @@ private:
 
     const std::string _folder;
     const AskPassphrase _ask;
-    const int _lock;
+    const FleetLock _lock;
     mutable std::map<std::string, KeyPtr> _authorityKeys;  // read when first needed
     std::string _fleet;
     Validity _validity;

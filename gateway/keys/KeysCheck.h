@@ -4,17 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "keys/KeysFinding.h"
 #include "keys/NodeKeys.h"
 
 namespace Rabit::Keys
 {
-
-// A remark on a node's keys, for people.
-struct KeysFinding
-{
-    bool IsProblem = true;  // or a note
-    std::string Text;
-};
 
 // Finds permissions that no node needs: writing by a pattern or in the partition of another node, anything
 // that is not forbidden, a range of domains, reading topics by a pattern. Permissions of a tool may read all

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "keys/Certificates.h"
+#include "keys/PrivateKeyPem.h"
 
 namespace Rabit::Keys
 {

@@ -13,7 +13,6 @@ namespace
 constexpr const char *Organization = "O";
 constexpr const char *Unit = "OU";
 constexpr const char *CommonName = "CN";
-constexpr std::size_t LongestName = 64;  // limit of X.509
 
 void Add(X509_NAME &name, const char *field, const std::string &value)
 {
@@ -35,27 +34,6 @@ std::string FieldOf(const X509_NAME &name, int index, int field)
 std::string SubjectName::Text() const
 {
     return "CN=" + Node + ",OU=" + std::to_string(Number) + ",O=" + Fleet;
-}
-
-bool IsFolderName(const std::string &name)
-{
-    const auto isGood = [](char c)
-    {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-               c == '.' || c == '-';
-    };
-    return !name.empty() && name.size() <= LongestName && name.front() != '.' &&
-           std::all_of(name.begin(), name.end(), isGood);
-}
-
-void CheckNodeName(const std::string &node)
-{
-    if (!IsFolderName(node) || node == AuthorityFolder)
-    {
-        throw KeysError("`" + node +
-                        "` cannot be the name of a node with keys; expected 1 to 64 of A-Z a-z 0-9 _ . -, no "
-                        "dot in front, and not `authority`");
-    }
 }
 
 NamePtr SubjectName::Encoded() const
@@ -116,7 +94,7 @@ bool HasSmallGuid(const SubjectName &subject)
 bool IsGuidOf(const std::string &fleet, std::string_view node, std::span<const std::uint8_t, 12> guidPrefix)
 {
     SubjectName subject{.Fleet = fleet, .Number = 0, .Node = std::string(node)};
-    if (node.empty() || node.size() > LongestName)
+    if (node.empty() || node.size() > LongestNodeName)
     {
         return false;
     }

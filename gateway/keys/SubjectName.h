@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "keys/NodeName.h"
 #include "keys/OpenSsl.h"
 
 namespace Rabit::Keys
@@ -28,15 +29,6 @@ struct SubjectName
     NamePtr Encoded() const;
     bool operator==(const SubjectName &) const = default;
 };
-
-// The folder of the authorities, beside those of the nodes.
-inline constexpr const char *AuthorityFolder = "authority";
-
-// Names of fleets and nodes are names of folders too. True for 1 to 64 letters, digits, `_`, `.` and `-`, and
-// no dot in front: that would be a hidden folder.
-bool IsFolderName(const std::string &name);
-// Throws KeysError if the name cannot be that of a node with keys.
-void CheckNodeName(const std::string &node);
 
 // Returns the subject of a certificate. Throws KeysError if it is not of that form.
 SubjectName SubjectOf(const X509 &certificate);

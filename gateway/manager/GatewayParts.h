@@ -18,6 +18,7 @@
 #include "incarnation/IncarnationStore.h"
 #include "manager/Exploration.h"
 #include "manager/GatewayPath.h"
+#include "manager/NodeSecurity.h"
 #include "mirrors/Subscriptions.h"
 #include "paths/PathChoice.h"
 #include "paths/PeersOverPaths.h"
@@ -150,6 +151,7 @@ private:
     Duration _earliestFleet{0};
     Duration _openedAt{0};
     bool _isOpen = false;
+    NodeMembers _members;
     std::vector<std::unique_ptr<GatewayPath>> _paths;
     std::optional<PeersOverPaths> _peers;
 };

@@ -29,6 +29,7 @@ void GatewayManager::Parts::MakePaths(const std::vector<std::shared_ptr<Transpor
         .Subscribed = _subscriptions,
         .Foreign = _foreign,
         .Choice = _choice,
+        .Members = _members,
         .Random = random,
         .IsNeeded = [this](const std::string &node) { return IsNeeded(node); },
         .OnText = [this](const std::string &node, std::uint64_t definition, TypeQuestions::Answer answer)

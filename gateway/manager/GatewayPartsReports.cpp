@@ -4,6 +4,7 @@
 #include <rabit/gateway/GatewayTap.h>
 
 #include <algorithm>
+#include <ctime>
 #include <limits>
 #include <utility>
 
@@ -200,6 +201,7 @@ void GatewayManager::Parts::AddProblems(Duration now, Gateway::Fleet &fleet) con
     {
         path->AddProblems(fleet, now);
     }
+    FleetReport::AddNetworkProblems(_members.Problems(std::time(nullptr)), fleet);
     for (std::size_t i = 0; i < _paths.front()->Publishers().size(); ++i)
     {
         const TopicPublisher &publisher = _paths.front()->Publishers()[i];

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "manager/NodeSecurity.h"
 #include "manager/TransportSettingsOf.h"
 #include "names/NamePattern.h"
 #include "report/FleetReport.h"
@@ -42,7 +41,7 @@ GatewayPath::GatewayPath(GatewayConfig config, std::shared_ptr<Rabit::Transport>
 void GatewayPath::Join()
 {
     TransportSettings settings = TransportSettingsOf(_config, _shared.Incarnation);
-    _keysEndAt = AddSecurity(_config, _transport->Name(), settings);
+    _keysEndAt = AddSecurity(_config, _transport->Name(), settings, _shared.Members);
     _session = _transport->Open(settings, [this](const PeerEvent &event) { _presence.OnPeer(event); });
     _air.TakeTurns(*_session, _shared.WakeUp);
 }

@@ -20,6 +20,7 @@
 #include "foreign/ForeignTopics.h"
 #include "gateway.idl.h"
 #include "manager/AirTraffic.h"
+#include "manager/NodeSecurity.h"
 #include "manager/TypeExchange.h"
 #include "mirrors/StateExchange.h"
 #include "mirrors/Subscriptions.h"
@@ -56,6 +57,7 @@ public:
         Subscriptions &Subscribed;
         ForeignTopics &Foreign;  // of the first path
         PathChoice &Choice;
+        NodeMembers &Members;
         RandomSource Random;
         PeerTable::IsNeeded IsNeeded;
         TypeExchange::OnText OnText;

@@ -1,14 +1,37 @@
 #include "manager/NodeSecurity.h"
 
+#include <rabit/base/UtcText.h>
+
 #include <ctime>
+#include <utility>
 
 #include "keys/KeysError.h"
+#include "keys/MemberFolder.h"
 #include "keys/NodeKeys.h"
 #include "names/ForeignNames.h"
 #include "wire/GatewayTopics.h"
 
 namespace Rabit
 {
+namespace
+{
+
+// From then on a coming end is a problem.
+constexpr std::time_t AheadOfTheEnd = 30 * 24 * 60 * 60;
+
+std::string DoesNotAllow(const std::string &permissions, const std::vector<std::string> &lacks, bool isTool)
+{
+    std::string listed;
+    for (const std::string &one : lacks)
+    {
+        listed += (listed.empty() ? "" : "; ") + one;
+    }
+    return permissions + " does not allow what the configuration needs: " + listed +
+           (isTool ? "; a tool needs keys of its own: `rabit keys add <name> --tool`"
+                   : "; `rabit keys renew` with the configuration makes permissions that fit");
+}
+
+}  // namespace
 
 Keys::Access AccessOf(const GatewayConfig &config)
 {
@@ -39,8 +62,63 @@ Keys::Access AccessOf(const GatewayConfig &config)
     return access;
 }
 
+std::shared_ptr<FleetMember> NodeMembers::Of(const GatewayConfig &config)
+{
+    const std::string &folder = config.Security->Keys;
+    const std::string stored =
+        config.StateDir.empty() ? "" : config.StateDir + "/" + config.Node + ".bulletin";
+    const Keys::MemberFolder keys(folder, Keys::KeyPlace::Here, stored);
+    if (const std::string why = keys.WhyNot(config.Node); !why.empty())
+    {
+        throw Keys::KeysError(why);
+    }
+    if (const auto lacks = keys.Lacks(AccessOf(config)); !lacks.empty())
+    {
+        throw Keys::KeysError(DoesNotAllow(keys.Files().Permissions, lacks, config.Tool.has_value()));
+    }
+    Known &known = _known[folder];
+    if (!known.Member)
+    {
+        MadeMember made = MakeFleetMember(keys.Keys());
+        if (!made.Member)
+        {
+            throw Keys::KeysError(folder + ": " + made.Error);
+        }
+        known = {.Member = std::move(made.Member),
+                 .EndsAt = static_cast<std::time_t>(keys.Certificate().Ends)};
+    }
+    return known.Member;
+}
+
+std::vector<SettingsProblem> NodeMembers::Problems(std::time_t now) const
+{
+    std::vector<SettingsProblem> problems;
+    for (const auto &[folder, known] : _known)
+    {
+        if (!known.Member)
+        {
+            continue;
+        }
+        // The member itself tells an end that is over.
+        if (now <= known.EndsAt && known.EndsAt - now <= AheadOfTheEnd)
+        {
+            problems.push_back({.Setting = "keys",
+                                .Entry = "",
+                                .Text = "the certificate of this node ends on " +
+                                        UtcText(known.EndsAt, "%Y-%m-%d") +
+                                        ": `rabit keys renew` makes a new one; other nodes go on hearing "
+                                        "this one"});
+        }
+        for (SettingsProblem &problem : known.Member->Problems())
+        {
+            problems.push_back(std::move(problem));
+        }
+    }
+    return problems;
+}
+
 std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::string &transport,
-                                       TransportSettings &settings)
+                                       TransportSettings &settings, NodeMembers &members)
 {
     if (!config.Security)
     {
@@ -49,22 +127,25 @@ std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::s
     const auto fail = [](const std::string &why) { throw TransportError(why, "security"); };
     try
     {
+        if (Keys::MemberFiles::AreIn(config.Security->Keys))
+        {
+            if (config.Security->Level == SecurityLevel::Sign)
+            {
+                fail("there is no `level: sign` with the keys in " + config.Security->Keys +
+                     ": everything is encrypted; remove `level`");
+            }
+            settings.Member = members.Of(config);
+            return std::nullopt;
+        }
         const Keys::NodeKeys keys(config.Security->Keys);
         if (const std::string why = keys.WhyNot(config.Node, transport, config.Domain, std::time(nullptr));
             !why.empty())
         {
             fail(why);
         }
-        std::string lacks;
-        for (const std::string &one : keys.Lacks(AccessOf(config)))
+        if (const auto lacks = keys.Lacks(AccessOf(config)); !lacks.empty())
         {
-            lacks += (lacks.empty() ? "" : "; ") + one;
-        }
-        if (!lacks.empty())
-        {
-            fail(keys.Files().Permissions + " does not allow what the configuration needs: " + lacks +
-                 (config.Tool ? "; a tool needs keys of its own: `rabit keys add <name> --tool`"
-                              : "; `rabit keys renew` with the configuration makes permissions that fit"));
+            fail(DoesNotAllow(keys.Files().Permissions, lacks, config.Tool.has_value()));
         }
         const Keys::NodeFiles &files = keys.Files();
         const bool encrypts = config.Security->Level == SecurityLevel::Encrypt;
@@ -90,8 +171,7 @@ std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::s
 
 std::optional<Gateway::Problem> KeysProblem(std::optional<std::time_t> endsAt, std::time_t now)
 {
-    constexpr std::time_t ahead = 30 * 24 * 60 * 60;
-    if (!endsAt || *endsAt - now > ahead)
+    if (!endsAt || *endsAt - now > AheadOfTheEnd)
     {
         return std::nullopt;
     }

@@ -60,7 +60,8 @@ std::vector<std::string> CheckTransportSettings(const GatewayConfig &config, con
     TransportSettings settings = TransportSettingsOf(config, AnyIncarnation);
     try
     {
-        AddSecurity(config, transport.Name(), settings);
+        NodeMembers members;
+        AddSecurity(config, transport.Name(), settings, members);
     }
     catch (const TransportError &error)
     {

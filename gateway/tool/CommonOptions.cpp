@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 
+#include "keys/MemberFolder.h"
 #include "keys/NodeKeys.h"
 
 namespace Rabit::Tool
@@ -97,9 +98,18 @@ void TakeOneValueEach(CLI::App &app)
 namespace
 {
 
-// Without a configuration file, the keys give the tool's name, domain and transport.
+// Without a configuration file, the keys give the tool's name, and those of the former format domain and
+// transport.
 void TakeFromKeys(const CommonOptions &options, GatewayConfig &config)
 {
+    if (Keys::MemberFiles::AreIn(config.Security->Keys))
+    {
+        if (options.Node.Node.empty())
+        {
+            config.Node = Keys::MemberFolder(config.Security->Keys).Certificate().Name;
+        }
+        return;
+    }
     const Keys::NodeKeys keys(config.Security->Keys);
     if (options.Node.Node.empty())
     {

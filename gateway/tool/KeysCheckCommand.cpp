@@ -6,7 +6,9 @@
 
 #include "Command.h"
 #include "KeysDomains.h"
+#include "KeysReport.h"
 #include "SafeText.h"
+#include "SealedKeys.h"
 #include "keys/FleetKeys.h"
 #include "keys/KeysCheck.h"
 #include "keys/KeysError.h"
@@ -19,13 +21,7 @@ namespace KeysCheckParts
 namespace
 {
 
-struct Options
-{
-    std::string Folder = "keys";
-    std::vector<std::string> Configs;
-    int Ahead = 30;
-    bool Json = false;
-};
+using Options = KeysCheckOptions;
 
 // Returns the domain of the most nodes; -1 if two domains have equally many, or none has any.
 int UsualDomainOf(const Keys::FleetKeys &fleet)
@@ -86,73 +82,53 @@ std::vector<Keys::KeysFinding> FindingsOf(const Keys::NodeKeys &keys, const Gate
 bool Check(const std::string &folder, const std::map<std::string, GatewayConfig> &configs,
            const Options &options, int usual = -1)
 {
-    std::string name = std::filesystem::path(folder).filename().string();
-    std::vector<Keys::KeysFinding> findings;
-    std::vector<std::string> words;
-    std::string until;
+    KeysReport report{.Node = std::filesystem::path(folder).filename().string(),
+                      .Folder = folder,
+                      .Until = "",
+                      .May = {},
+                      .Findings = {}};
     try
     {
         const std::filesystem::path parent = std::filesystem::weakly_canonical(folder).parent_path();
         const Keys::NodeKeys keys(folder, Keys::FleetKeys::IsFleet(parent.string())
                                               ? Keys::PrivateKeyPlace::HereOrOnNode
                                               : Keys::PrivateKeyPlace::Here);
-        name = keys.Subject().Node;
-        until = Keys::DayText(keys.ValidityOf().To);
-        words = Keys::WhoMayWhat(keys);
-        const auto config = configs.find(name);
-        findings = FindingsOf(keys, config == configs.end() ? nullptr : &config->second, options.Ahead);
+        report.Node = keys.Subject().Node;
+        report.Until = Keys::DayText(keys.ValidityOf().To);
+        report.May = Keys::WhoMayWhat(keys);
+        const auto config = configs.find(report.Node);
+        report.Findings =
+            FindingsOf(keys, config == configs.end() ? nullptr : &config->second, options.Ahead);
         if (!keys.HasPrivateKey())
         {
-            findings.push_back({false, "its private key is on the node alone"});
+            report.Findings.push_back({false, "its private key is on the node alone"});
         }
         if (usual >= 0 && DomainOf(keys) != usual)
         {
-            findings.push_back({false, "most nodes are in domain " + std::to_string(usual)});
+            report.Findings.push_back({false, "most nodes are in domain " + std::to_string(usual)});
         }
     }
     catch (const Keys::KeysError &error)
     {
-        findings.push_back({true, error.what()});
+        report.Findings.push_back({true, error.what()});
     }
-    const bool isGood = std::none_of(findings.begin(), findings.end(),
-                                     [](const Keys::KeysFinding &finding) { return finding.IsProblem; });
-    if (options.Json)
-    {
-        Json problems = Json::array();
-        Json notes = Json::array();
-        for (const Keys::KeysFinding &finding : findings)
-        {
-            (finding.IsProblem ? problems : notes).push_back(finding.Text);
-        }
-        Output::Object(Json{{"node", name},
-                            {"folder", folder},
-                            {"until", until},
-                            {"may", words},
-                            {"problems", problems},
-                            {"notes", notes}});
-        return isGood;
-    }
-    Output::Line(SafeText(name) + (until.empty() ? "" : ": valid until " + until));
-    for (const std::string &line : words)
-    {
-        Output::Line("  " + SafeText(line));
-    }
-    for (const Keys::KeysFinding &finding : findings)
-    {
-        Output::Line((finding.IsProblem ? "  problem: " : "  note: ") + SafeText(finding.Text));
-    }
-    return isGood;
+    return Print(report, options.Json);
 }
 
 int Run(const Options &options)
 {
-    std::map<std::string, GatewayConfig> configs;
-    for (const std::string &file : options.Configs)
+    if (SealedKeys::AreIn(options.Folder))
     {
-        GatewayConfig config = ConfigForKeys(file, "");
-        const std::string node = config.Node;
-        configs.insert_or_assign(node, std::move(config));
+        return SealedKeys::Check(options);
     }
+    if (Keys::FleetKeys::IsFleet(options.Folder) ||
+        std::filesystem::exists(Keys::NodeFiles(options.Folder).Certificate))
+    {
+        Output::Talk("the keys in " + options.Folder +
+                     " are of the former format, which will be removed; `rabit keys init --sealed` makes a "
+                     "fleet of the new one");
+    }
+    const std::map<std::string, GatewayConfig> configs = ConfigsOf(options);
     if (!Keys::FleetKeys::IsFleet(options.Folder))
     {
         return Check(options.Folder, configs, options) ? Good : ProblemFound;
@@ -171,15 +147,7 @@ int Run(const Options &options)
             Output::Line(SafeText(node) + ": revoked");
         }
     }
-    for (const auto &[node, config] : configs)
-    {
-        if (!std::filesystem::exists(fleet.FolderOf(node)))
-        {
-            Output::Talk(node + " has no keys; `rabit keys add " + node + " --config " + config.File + "`");
-            isGood = false;
-        }
-    }
-    return isGood ? Good : ProblemFound;
+    return AllHaveKeys(configs, options.Folder) && isGood ? Good : ProblemFound;
 }
 
 }  // namespace

@@ -9,7 +9,9 @@
 
 #include "Command.h"
 #include "KeysDomains.h"
+#include "KeysOptions.h"
 #include "SafeText.h"
+#include "SealedKeys.h"
 #include "keys/FleetKeys.h"
 #include "keys/KeyFiles.h"
 #include "keys/KeysCheck.h"
@@ -26,23 +28,7 @@ namespace KeysParts
 namespace
 {
 
-struct Options
-{
-    std::string Folder = "keys";
-    std::string FleetName = "fleet";
-    std::string Node;
-    std::vector<std::string> Nodes;
-    std::string Config;
-    std::vector<std::string> Requests;
-    std::string PassphraseFile;
-    std::string Transport;
-    int Domain = -1;  // the file's, or for a tool that of the fleet
-    int Days = 365;
-    bool ForTool = false;
-    bool RevokeOld = false;
-    bool AsksForPassphrase = false;
-    bool Json = false;
-};
+using Options = KeysOptions;
 
 Keys::FleetKeys FleetOf(const Options &options)
 {
@@ -157,6 +143,10 @@ void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::s
 
 int Init(const Options &options)
 {
+    if (options.Sealed)
+    {
+        return SealedKeys::Init(options);
+    }
     std::optional<Keys::Secret> passphrase = Keys::GivenPassphrase(options.PassphraseFile);
     if (!passphrase && options.AsksForPassphrase)
     {
@@ -181,6 +171,10 @@ int Init(const Options &options)
 
 int Add(const Options &options)
 {
+    if (SealedKeys::AreIn(options.Folder))
+    {
+        return SealedKeys::Add(options);
+    }
     const Keys::FleetKeys fleet = FleetOf(options);
     fleet.Add(RequestOf(options, fleet, options.Node), PeriodOf(options));
     ShowMade(options, fleet, options.Node);
@@ -189,6 +183,10 @@ int Add(const Options &options)
 
 int Request(const Options &options)
 {
+    if (options.Sealed || SealedKeys::AreIn(options.Folder))
+    {
+        return SealedKeys::Request(options);
+    }
     const Keys::RequestedKeys made = Keys::RequestKeys(options.Folder, options.Node);
     Output::ObjectOrLine(options.Json,
                          Json{{"node", options.Node},
@@ -205,6 +203,10 @@ int Request(const Options &options)
 
 int Sign(const Options &options)
 {
+    if (SealedKeys::AreIn(options.Folder))
+    {
+        return SealedKeys::Sign(options);
+    }
     // All are read before the first is signed.
     std::vector<Keys::SigningRequest> requests;
     for (const std::string &file : options.Requests)
@@ -222,6 +224,10 @@ int Sign(const Options &options)
 
 int Renew(const Options &options)
 {
+    if (SealedKeys::AreIn(options.Folder))
+    {
+        return SealedKeys::Renew(options);
+    }
     std::optional<Keys::SigningRequest> signing;
     if (!options.Requests.empty())
     {
@@ -255,6 +261,10 @@ int Renew(const Options &options)
 
 int Revoke(const Options &options)
 {
+    if (SealedKeys::AreIn(options.Folder))
+    {
+        return SealedKeys::Revoke(options);
+    }
     const Keys::FleetKeys fleet = FleetOf(options);
     const std::size_t count = fleet.Revoke(options.Node, std::time(nullptr));
     Output::ObjectOrLine(options.Json, Json{{"node", options.Node}, {"revoked", count}},
@@ -275,13 +285,19 @@ CLI::Option *AddFolder(CLI::App &command, Options &options)
     return command.add_option("--keys", options.Folder, "The fleet's folder")->capture_default_str();
 }
 
-void AddDays(CLI::App &command, Options &options, int days)
+CLI::Option *AddDays(CLI::App &command, Options &options, int days)
 {
     constexpr int longest = 36500;
     options.Days = days;
-    command.add_option("--days", options.Days, "How long they are valid")
+    return command.add_option("--days", options.Days, "How long they are valid")
         ->check(CLI::Range(1, longest))
         ->capture_default_str();
+}
+
+CLI::Option *AddSealed(CLI::App &command, Options &options)
+{
+    return command.add_flag("--sealed", options.Sealed,
+                            "Keys of the new format, with which each datagram is sealed");
 }
 
 void AddPassphrase(CLI::App &command, Options &options)
@@ -347,11 +363,14 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     CLI::App *command = nullptr;
 
     auto init = AddCommand(*keys, "init", "Makes the two authorities of a new fleet", &Init, chosen, command);
-    AddExamples(*command, {"rabit keys init", "rabit keys init fleet_keys --name survey",
-                           "rabit keys init --passphrase --days 365"});
+    AddExamples(*command, {"rabit keys init", "rabit keys init --sealed --passphrase",
+                           "rabit keys init fleet_keys --name survey --days 365"});
     command->add_option("FOLDER", init->Folder, "Where to")->capture_default_str();
-    command->add_option("--name", init->FleetName, "Name of the fleet")->capture_default_str();
-    AddDays(*command, *init, 3650);
+    CLI::Option *name =
+        command->add_option("--name", init->FleetName, "Name of the fleet")->capture_default_str();
+    CLI::Option *days = AddDays(*command, *init, 3650);
+    // An authority of the new format has neither.
+    AddSealed(*command, *init)->excludes(name)->excludes(days);
     command->add_flag("--passphrase", init->AsksForPassphrase,
                       "Asks at the terminal for a passphrase, and encrypts the authorities' private keys");
     command->add_option(
@@ -378,6 +397,7 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     command->add_option("NODE", request->Node, "Name of the node")->required();
     command->add_option("--to", request->Folder, "The node's folder of keys, made if it is not there")
         ->capture_default_str();
+    AddSealed(*command, *request);
 
     auto sign = AddCommand(*keys, "sign",
                            "Makes certificates and permissions for nodes that made requests: no secret files",

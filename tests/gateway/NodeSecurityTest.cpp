@@ -14,7 +14,9 @@
 #include <string>
 #include <vector>
 
+#include "keys/FleetAuthority.h"
 #include "keys/FleetKeys.h"
+#include "keys/MemberPermissions.h"
 
 namespace Rabit
 {
@@ -78,13 +80,14 @@ protected:
 
     const std::string Root;
     GatewayConfig Config;
+    NodeMembers Members;
 };
 
 TEST_F(NodeSecurity, WithoutItNothingIsAsked)
 {
     Config.Security.reset();
     TransportSettings settings;
-    EXPECT_EQ(AddSecurity(Config, "fastdds", settings), std::nullopt);
+    EXPECT_EQ(AddSecurity(Config, "fastdds", settings, Members), std::nullopt);
     EXPECT_FALSE(settings.Security);
 }
 
@@ -93,7 +96,7 @@ TEST_F(NodeSecurity, KeysThatFitTheConfigurationAreHandedToTheTransport)
     Make();
     EXPECT_EQ(WhyNot(), "");
     TransportSettings settings;
-    EXPECT_TRUE(AddSecurity(Config, "fastdds", settings));
+    EXPECT_TRUE(AddSecurity(Config, "fastdds", settings, Members));
     ASSERT_TRUE(settings.Security);
     EXPECT_EQ(settings.Security->Governance, Root + "/keys/uav1/governance_encrypt.p7s");
 }
@@ -103,7 +106,7 @@ TEST_F(NodeSecurity, TheLevelChoosesTheGovernance)
     Make();
     Config.Security->Level = SecurityLevel::Sign;
     TransportSettings settings;
-    AddSecurity(Config, "fastdds", settings);
+    AddSecurity(Config, "fastdds", settings, Members);
     EXPECT_EQ(settings.Security->Governance, Root + "/keys/uav1/governance_sign.p7s");
     EXPECT_FALSE(settings.Security->Encrypts);
 }
@@ -141,6 +144,84 @@ TEST_F(NodeSecurity, KeysThatEndSoonAreAProblem)
     ASSERT_TRUE(KeysProblem(end, end - 29 * Day));
     EXPECT_THAT(KeysProblem(end, end - 29 * Day)->reason, HasSubstr("ends on 2026-11-23"));
     EXPECT_THAT(KeysProblem(end, end + 1)->reason, HasSubstr("ended on 2026-11-23"));
+}
+
+class NodeMembership : public NodeSecurity
+{
+protected:
+    void MakeNew(int days = 365, std::time_t now = std::time(nullptr)) const
+    {
+        Keys::FleetAuthority::Init(Root + "/keys");
+        Keys::FleetAuthority(Root + "/keys")
+            .Add({.Node = "uav1", .Allowed = Keys::PermissionsFor(AccessOf(Config))},
+                 {.Now = now, .Days = days});
+    }
+};
+
+TEST_F(NodeMembership, IsHandedToTheTransportInsteadOfDdsSecurity)
+{
+    MakeNew();
+    TransportSettings settings;
+    EXPECT_EQ(AddSecurity(Config, "cyclonedds", settings, Members), std::nullopt);
+    ASSERT_TRUE(settings.Member);
+    EXPECT_EQ(settings.Member->Name(), "uav1");
+    EXPECT_FALSE(settings.Security);
+}
+
+TEST_F(NodeMembership, IsOneForAllPaths)
+{
+    MakeNew();
+    TransportSettings first;
+    TransportSettings second;
+    AddSecurity(Config, "fastdds", first, Members);
+    AddSecurity(Config, "cyclonedds", second, Members);
+    EXPECT_EQ(first.Member, second.Member);
+}
+
+TEST_F(NodeMembership, HasNoLevelThatSignsAlone)
+{
+    MakeNew();
+    Config.Security->Level = SecurityLevel::Sign;
+    EXPECT_THAT(WhyNot(), HasSubstr("uav1.yaml:5: there is no `level: sign` with the keys in"));
+}
+
+TEST_F(NodeMembership, IsRefusedForMoreThanThePermissions)
+{
+    MakeNew();
+    Config.Publish.push_back({.Message = "Photo", .Type = "Uav::Pose"});
+    EXPECT_THAT(WhyNot(), HasSubstr("does not allow what the configuration needs: write Photo;"));
+}
+
+TEST_F(NodeMembership, IsRefusedUnderAnotherName)
+{
+    MakeNew();
+    Config.Node = "uav2";
+    EXPECT_THAT(WhyNot(), HasSubstr("is for the node `uav1`, and this is `uav2`"));
+}
+
+TEST_F(NodeMembership, ThatEndsSoonIsAProblem)
+{
+    const std::time_t now = std::time(nullptr);
+    MakeNew(365, now);
+    TransportSettings settings;
+    AddSecurity(Config, "fastdds", settings, Members);
+    EXPECT_TRUE(Members.Problems(now).empty());
+    const std::vector<SettingsProblem> problems = Members.Problems(now + 340 * Day);
+    ASSERT_EQ(problems.size(), 1U);
+    EXPECT_EQ(problems.front().Setting, "keys");
+    EXPECT_THAT(problems.front().Text, HasSubstr("the certificate of this node ends on "));
+}
+
+TEST_F(NodeMembership, GoesOnAfterItsEndWithOneProblem)
+{
+    const std::time_t now = std::time(nullptr);
+    MakeNew(1, now - 100 * Day);
+    EXPECT_EQ(WhyNot(), "");
+    TransportSettings settings;
+    AddSecurity(Config, "fastdds", settings, Members);
+    const std::vector<SettingsProblem> problems = Members.Problems(now);
+    ASSERT_EQ(problems.size(), 1U);
+    EXPECT_THAT(problems.front().Text, HasSubstr("ended on "));
 }
 
 class SecurityInAFile : public testing::Test

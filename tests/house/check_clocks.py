@@ -41,6 +41,7 @@ MAY = {
     "tests/gateway/tool/FleetSessionTest.cpp": PACE,
     "tests/opponent/main.cpp": PACE,
     "tests/transport/interop/interop_node.cpp": PACE,
+    "tests/transport/envelope/SealedSessionTest.cpp": ANY_TIME,
     "tests/transport/security/secured_peer.cpp": PACE,
     "tests/transport/thin/thin_node.cpp": PACE,
     "tests/core/ClockTest.cpp": CLOCK,

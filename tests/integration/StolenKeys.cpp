@@ -62,7 +62,8 @@ public:
         owner.Security = Rabit::SecuritySettings();
         owner.Security->Keys = _folder;
         Rabit::TransportSettings stolen = settings;
-        static_cast<void>(Rabit::AddSecurity(owner, Name(), stolen));
+        Rabit::NodeMembers members;
+        static_cast<void>(Rabit::AddSecurity(owner, Name(), stolen, members));
         return std::make_unique<Session>(_backend->Open(stolen, std::move(onPeer)), settings.Node,
                                          owner.Node);
     }

@@ -81,8 +81,12 @@ MUTATIONS = [
     rule("a proof counts from when it comes", "Session.cpp", "_heard = at;", "_heard = now;"),
     rule("an answer counts for ever", "OwnChallenges.h", "|| now - asked.At > AnswersCountFor", ""),
     rule("no nonce may be answered", "OwnChallenges.h", "asked.Of == Nonce{} ||", ""),
-    rule("each question gets a claim of its own", "OwnAnswers.h", "now < _next ||", ""),
-    rule("recordings are answered first", "OwnAnswers.h", "verified ? _verified : _others", "verified ? _others : _verified"),
+    rule("each repeated question is answered at once", "ClaimExchange.cpp",
+         "now - answered->At < answered->Gap.Interval()", "false"),
+    rule("recordings displace the questions of claims that were verified", "ClaimExchange.cpp",
+         "least->second.By > standing", "false"),
+    rule("recordings are answered as often as they come", "ClaimExchange.cpp",
+         "_unprovenNotBefore = now + _unprovenGap.Next();", ""),
     # Sessions
     rule("a prefix may have two speakers", "SessionTable.cpp",
          "if (const std::string *const holder = HolderOf(facts, now))",
@@ -102,7 +106,7 @@ MUTATIONS = [
     rule("a displaced session begins anew", "SessionTable.cpp", "known->Window().SetFloor(*highest + 1);", ""),
     rule("headers change", "SessionTable.cpp", "isSame && known->Headers() != facts.Headers", "false"),
     # Certificates, permissions, bulletins
-    rule("a tool writes", "Permissions.cpp", "role == CertificateRole::Node &&", ""),
+    rule("a tool writes", "Permissions.cpp", "(role == CertificateRole::Node || topic.starts_with(OwnTopics)) &&", ""),
     rule("an old epoch is learned", "EpochSecrets.cpp", "epoch <= Newest()", "epoch == 0"),
     rule("the newest epoch ends", "EpochSecrets.cpp", "isNewest || now - (known + 1)->Learned <= Overlap", "isNewest"),
     rule("a bulletin of anybody is taken", "Bulletin.cpp",

@@ -3,6 +3,8 @@
 from mutation import Mutation
 
 FASTDDS = "transport/fastdds/src/"
+CYCLONEDDS = "transport/cyclonedds/src/"
+CYCLONEDDS_MEMBERS = "cyclonedds_members_test:CycloneDdsMembersTest"
 ENVELOPE = "transport/envelope/"
 GUARD = "transport/guard/"
 GUARD_TEST = "rtps_guard_test"
@@ -118,6 +120,30 @@ MUTATIONS = [
           "return good && value.IsGood() && value.Left() == 0;", "return good && value.IsGood();"),
     guard("user data may say that it is longer", "DiscoveryCheck.cpp",
           "return value.IsGood() && value.Left() == (4 - size % 4) % 4;", "return true;"),
+    guard("a forbidden endpoint is announced", "RtpsGuard.cpp",
+          "Answer::Forbidden ? Verdict::Forbid : Verdict::Ignore", "Answer::Forbidden ? Verdict::Pass : Verdict::Ignore"),
+    guard("a forbidden endpoint leaves no gap", "RtpsGuard.cpp", "MakeGap(*submessage);", "Blank(*submessage);"),
+    guard("a participant may have any name", "AuthorityCheck.cpp", "announcement.Name == known", "true"),
+    guard("the last of two topics is judged", "DiscoveryCheck.cpp", "Names++ == 0 &&", ""),
+    guard("a topic is judged up to a zero byte", "DiscoveryCheck.cpp", "&& std::next(end) == text.end()", ""),
+    guard("a refusal is told at once", "../common/AuthorityRefusals.cpp", "&& now - refusal.Began >= Lasting", ""),
+    Mutation("what leaves Cyclone DDS goes as it is", CYCLONEDDS + "VendorTraffic.c", "watch->calls.seal == NULL || IsWakeUp(parts, part)",
+             "true", f"{CYCLONEDDS_MEMBERS}.NothingThatGoesToAListedPeerIsPlain"),
+    Mutation("the seal has no room in a datagram of Cyclone DDS", CYCLONEDDS + "DomainConfig.cpp",
+             "(settings.Security ? SecurityRoom : 0) - added", "(settings.Security ? SecurityRoom : 0)",
+             f"{CYCLONEDDS_MEMBERS}.NoSealedDatagramIsLargerThanTheLargestOne"),
+    Mutation("a configuration may pass by the keys", CYCLONEDDS + "VendorDomain.cpp", "_seal == nullptr || why == nullptr", "true",
+             f"{CYCLONEDDS_MEMBERS}.AConfiguration*"),
+    Mutation("a simulated member may write anything", "transport/simulated/src/Sealing.cpp",
+             "return me.Seal->May(from, endpoint->IsWriter, endpoint->Topic);", "return true;", "simulated_network_test:SimulatedMembersTest.OnATopic*"),
+    Mutation("a program without keys reads what is sealed", "transport/simulated/src/Sealing.cpp", "return datagram.Sealed == nullptr;",
+             "return true;", "simulated_network_test:SimulatedMembersTest.AProgramWithoutKeys*"),
+    Mutation("what is sealed to several takes no more bytes", "transport/simulated/src/Sending.cpp",
+             "cost.Bytes += SealLetters(from, first, last, multicast);", "SealLetters(from, first, last, multicast);",
+             "simulated_network_test:SimulatedMembersTest.ASampleToSeveral*"),
+    Mutation("what goes to one address goes as it is", FASTDDS + "SocketOutput.cpp", "return _settings.Seal->Seal(datagram, place,",
+             "sealed.assign(datagram.begin(), datagram.end()); return place || _settings.Seal->Seal(datagram, place,",
+             "fastdds_paces_test:SealedUdpTest*"),
     guard("a participant may speak of another", "DiscoveryCheck.cpp",
           "bytes.size() != 16 || !IsGuidOf(sender, bytes) || EntityOf(bytes) != ParticipantEntity",
           "bytes.size() != 16 || EntityOf(bytes) != ParticipantEntity"),

@@ -106,6 +106,7 @@ bool Ledger::HasEndpoint(const GuidPrefix &peer, EntityId endpoint, std::span<co
 
 void Ledger::EndpointGone(const GuidPrefix &peer, EntityId endpoint)
 {
+    _ofAuthority.Gone(peer, endpoint);
     const std::lock_guard lock(_mutex);
     const auto found = _accounts.find(peer);
     _endpoints -= found == _accounts.end() ? 0 : found->second.Endpoints.erase(endpoint);
@@ -113,6 +114,7 @@ void Ledger::EndpointGone(const GuidPrefix &peer, EntityId endpoint)
 
 void Ledger::Left(const GuidPrefix &peer)
 {
+    _ofAuthority.Left(peer);
     const std::lock_guard lock(_mutex);
     const auto found = _accounts.find(peer);
     if (found != _accounts.end())

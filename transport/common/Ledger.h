@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/AuthorityRefusals.h"
 #include "common/Rtps.h"
 
 namespace Rabit::Rtps
@@ -130,6 +131,9 @@ public:
     std::vector<Refused> LastingRefusals(TimePoint now) const;
     std::uint64_t Refusals() const;
 
+    // Announcements that certificates do not allow. Entries end with their endpoints and accounts.
+    AuthorityRefusals &OfAuthority() { return _ofAuthority; }
+
 private:
     static constexpr std::size_t MostHosts = 64;  // of Refusal
     static constexpr std::size_t IpAndUdp = 28;
@@ -191,6 +195,7 @@ private:
     TimePoint _filledAt{};
     std::map<HostAddress, Refusal> _refused;
     std::uint64_t _refusals = 0;
+    AuthorityRefusals _ofAuthority;  // has a lock of its own
 };
 
 }  // namespace Rabit::Rtps

@@ -393,7 +393,8 @@ std::vector<SettingsProblem> CheckRejoining(const TransportSettings &settings,
     }
     catch (const TransportError &error)
     {
-        problems.push_back({error.Setting(), settings.BackendConfig, error.what(), true});
+        const bool isOfFile = error.Setting() == "backend_config";
+        problems.push_back({error.Setting(), isOfFile ? settings.BackendConfig : "", error.what(), true});
     }
     if (!problems.empty())
     {

@@ -3,6 +3,7 @@
 #include <arpa/inet.h>
 #include <net/if.h>
 #include <netinet/in.h>
+#include <rabit/transport/FleetMember.h>
 
 #include <string>
 
@@ -77,6 +78,15 @@ std::vector<SettingsProblem> FindImpossible(const TransportSettings &settings)
                std::to_string(settings.MaxDatagram));
     refuse(settings.AnnouncementPeriod.count() <= 0 || settings.Lease <= settings.AnnouncementPeriod, "lease",
            "", "the lease must be longer than the announcement period, and both positive");
+    if (settings.Member != nullptr)
+    {
+        const std::string &name = settings.Member->Name();
+        refuse(settings.Security.has_value(), "security", "",
+               "a member of a fleet with keys does not use DDS Security: leave one of both out");
+        refuse(name != settings.Node, "security", "",
+               "the keys are those of node " + name + ", not of " + settings.Node +
+                   ": use the keys of this node");
+    }
     return problems;
 }
 

@@ -71,7 +71,8 @@ std::vector<PeerPlace> VendorCore::PeerPlaces() const
 std::vector<SettingsProblem> VendorCore::Problems() const
 {
     std::vector<SettingsProblem> problems;
-    for (const Rtps::Ledger::Refused &refused : _accounts->LastingRefusals(std::chrono::steady_clock::now()))
+    const auto now = std::chrono::steady_clock::now();
+    for (const Rtps::Ledger::Refused &refused : _accounts->LastingRefusals(now))
     {
         problems.push_back(
             {.Setting = "stranger",
@@ -79,6 +80,11 @@ std::vector<SettingsProblem> VendorCore::Problems() const
              .Text = "programs there announce or request more than this node gives to strangers: "
                      "refused " +
                      std::to_string(refused.Times) + " times"});
+    }
+    for (Rtps::AuthorityRefusals::Row &row : _accounts->OfAuthority().LastingRefusals(now))
+    {
+        problems.push_back(
+            {.Setting = "security", .Entry = std::move(row.Node), .Text = std::move(row.Text)});
     }
     if (auto problem = MeetingProblem())
     {

@@ -34,7 +34,7 @@ constexpr std::size_t LongestCertificateName = 64;
 enum class CertificateRole : std::uint8_t
 {
     Node = 0,
-    Tool = 1  // writes no topic, whatever its permissions say
+    Tool = 1  // writes no topic but the gateways' own, whatever its permissions say
 };
 
 struct Certificate

@@ -77,7 +77,7 @@ public:
         Session *Sender = nullptr;
         // Of a claim that was verified, refused or not.
         std::optional<ClaimVerdict> Verdict{};
-        // Of a claim whose tag is right; zero: none. Answer it (OwnAnswers). After OverBudget nothing else is
+        // Of a claim whose tag is right; zero: none. Answer it. After OverBudget nothing else is
         // known of its sender.
         Nonce Challenge{};
         Hash Wanted{};           // with UnknownCertificate: the hash of that certificate

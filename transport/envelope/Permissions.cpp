@@ -15,6 +15,7 @@ namespace
 constexpr std::uint8_t PermissionsFormat = 1;
 constexpr std::uint8_t WriteBit = 1;
 constexpr std::uint8_t ReadBit = 2;
+constexpr std::string_view OwnTopics = "rabit/";  // of gateways: beats and links
 
 bool IsPermissionRule(const Permissions::Rule &rule)
 {
@@ -114,7 +115,7 @@ Hash Permissions::HashOf(std::span<const std::uint8_t> bytes)
 
 bool Permissions::MayWrite(std::string_view topic, CertificateRole role) const
 {
-    return role == CertificateRole::Node &&
+    return (role == CertificateRole::Node || topic.starts_with(OwnTopics)) &&
            std::any_of(_rules.begin(), _rules.end(),
                        [topic](const Rule &rule)
                        { return rule.MayWrite && MatchesTopic(rule.Topic, topic); });

@@ -45,7 +45,8 @@ public:
     // The hash that a certificate holds.
     static Hash HashOf(std::span<const std::uint8_t> bytes);
 
-    // True if a rule allows it. All other topics are forbidden. `role`: a tool may write nothing.
+    // True if a rule allows it. All other topics are forbidden. `role`: of all topics a tool may write the
+    // gateways' own alone, which begin with `rabit/`.
     bool MayWrite(std::string_view topic, CertificateRole role) const;
     bool MayRead(std::string_view topic) const;
     const std::vector<Rule> &Rules() const { return _rules; }

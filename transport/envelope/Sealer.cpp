@@ -67,7 +67,7 @@ bool Sealer::MaySealIn(Epoch epoch, OuterClass contents) const
 }
 
 Sealer::Result Sealer::SealClaim(const Nonce &challenge, std::span<const Nonce> answers, bool withCertificate,
-                                 std::span<std::uint8_t> out)
+                                 std::span<std::uint8_t> out, std::optional<Epoch> epoch)
 {
     Claim claim{.Challenge = challenge, .Headers = _self.Headers};
     claim.Answers.assign(answers.begin(), answers.begin() + static_cast<std::ptrdiff_t>(std::min(
@@ -78,7 +78,9 @@ Sealer::Result Sealer::SealClaim(const Nonce &challenge, std::span<const Nonce> 
     }
     const std::vector<std::uint8_t> plain = WriteClaim(claim);
     std::copy(plain.begin(), plain.end(), _work.begin() + OuterContextSize);
-    return SealTries({.Kind = OuterKind::Claim, .Contents = OuterClass::Meeting, .Epoch = _epochs.Newest()},
+    return SealTries({.Kind = OuterKind::Claim,
+                      .Contents = OuterClass::Meeting,
+                      .Epoch = epoch.value_or(_epochs.Newest())},
                      plain.size(), out);
 }
 

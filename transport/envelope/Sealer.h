@@ -61,9 +61,10 @@ public:
     Result SealPairwise(std::span<const std::uint8_t> message, OuterClass contents, const Receiver &to,
                         std::span<std::uint8_t> out);
     // A claim of this session, with all its headers. `out`: LargestClaim bytes at most. `withCertificate`:
-    // some receiver may not know it.
+    // some receiver may not know it. `epoch`: a former one, in which a node sends that lacks a bulletin; else
+    // the newest.
     Result SealClaim(const Nonce &challenge, std::span<const Nonce> answers, bool withCertificate,
-                     std::span<std::uint8_t> out);
+                     std::span<std::uint8_t> out, std::optional<Epoch> epoch = std::nullopt);
 
     // The number of the next datagram. Numbers are never used twice, nor where a try failed.
     std::uint64_t Next() const { return _self.Next; }

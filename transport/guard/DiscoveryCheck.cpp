@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -33,6 +35,8 @@ struct Found
     bool Lease = false;
     bool Topic = false;
     bool Type = false;
+    int Names = 0;
+    std::optional<std::string> Name;
     int Locators = 0;
     Fnv1a Digest;
     Fnv1a DigestWithoutLease;
@@ -49,6 +53,15 @@ struct Found
         {
             Hosts.push_back(host);
         }
+    }
+    // The name of the subject; may be unsound.
+    void Named(RtpsReader value)
+    {
+        const std::uint32_t size = value.U32();
+        const auto text = value.Bytes(size);
+        const auto end = std::find(text.begin(), text.end(), std::uint8_t{0});
+        const bool isOne = Names++ == 0 && end != text.end() && std::next(end) == text.end();
+        Name = isOne ? std::optional(std::string(text.begin(), end)) : std::nullopt;
     }
     void Digested(std::uint16_t id, std::span<const std::uint8_t> value)
     {
@@ -252,6 +265,10 @@ bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
         }
         return bytes.size() == size;
     }
+    if (id == (writer == ParticipantWriter ? EntityName : TopicName))
+    {
+        found.Named(value);
+    }
     switch (id)
     {
         case LeaseDuration:
@@ -419,6 +436,7 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
                        ? std::optional(
                              Announcement{.Subject = found.Subject,
                                           .Digest = (hasCard ? found.DigestWithoutLease : found.Digest).Sum(),
+                                          .Name = std::move(found.Name),
                                           .IsBestEffort = found.BestEffort,
                                           .Hosts = std::move(found.Hosts),
                                           .Places = std::move(found.Places),

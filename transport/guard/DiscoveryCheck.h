@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/Ledger.h"
@@ -29,6 +30,9 @@ struct Announcement
     // Participant: hash of its addresses, and of what it says of its security. Endpoint: hash of all
     // parameters that we use.
     std::uint64_t Digest = 0;
+    // Participant: its name. Endpoint: its topic. Empty unless there is exactly one, without a zero byte in
+    // it: two vendors may read different names.
+    std::optional<std::string> Name{};
     // Writer: it is best effort.
     bool IsBestEffort = false;
     // Participant: the addresses at which it says it can be reached.

@@ -104,6 +104,10 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
                 passage.Honest = false;
                 Blank(*submessage);
                 break;
+            case Verdict::Forbid:
+                passage.Honest = false;
+                MakeGap(*submessage);
+                break;
             case Verdict::Ignore:
                 Blank(*submessage);
                 break;
@@ -246,19 +250,21 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
     {
         verdict = JudgeBuiltinSample(submessage, delivery, passage);
     }
-    if (verdict == Verdict::Pass && _mode == Mode::Full)
+    const auto goesOn = [&verdict] { return verdict == Verdict::Pass || verdict == Verdict::Forbid; };
+    const auto also = [&verdict](Verdict other) { verdict = other == Verdict::Pass ? verdict : other; };
+    if (goesOn() && _mode == Mode::Full)
     {
-        verdict = Compare(submessage, delivery, passage);
+        also(Compare(submessage, delivery, passage));
     }
-    if (verdict == Verdict::Pass && _vendor == Vendor::FastDds)
+    if (goesOn() && _vendor == Vendor::FastDds)
     {
-        verdict = CutAbsent(submessage, delivery, passage);
+        also(CutAbsent(submessage, delivery, passage));
     }
     if (verdict == Verdict::Pass && passage.Whence == Origin::Network && IsCounted(passage))
     {
         NoteVoice(submessage, delivery, passage);
     }
-    passage.Useful = passage.Useful || verdict == Verdict::Pass;
+    passage.Useful = passage.Useful || goesOn();
     return verdict;
 }
 
@@ -318,12 +324,19 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
     return _mode == Mode::Full && isEndpoint && _peers.Hears(passage.Sender, passage.Now)
-               ? JudgeEndpoint(*announcement, passage)
+               ? JudgeEndpoint(*announcement, delivery.Writer, passage)
                : Verdict::Pass;
 }
 
-RtpsGuard::Verdict RtpsGuard::JudgeEndpoint(const Announcement &announcement, const Passage &passage)
+RtpsGuard::Verdict RtpsGuard::JudgeEndpoint(const Announcement &announcement, EntityId writer,
+                                            const Passage &passage)
 {
+    const auto answer = _authority ? _authority->OfEndpoint(passage.Sender, writer, announcement, passage.Now)
+                                   : AuthorityCheck::Answer::Allowed;
+    if (answer != AuthorityCheck::Answer::Allowed)
+    {
+        return answer == AuthorityCheck::Answer::Forbidden ? Verdict::Forbid : Verdict::Ignore;
+    }
     if ((IsCounted(passage) &&
          !_ledger->HasEndpoint(passage.Sender, announcement.Subject, announcement.Places, passage.Now)) ||
         !_peers.EndpointAnnounced(passage.Sender, announcement.Subject, announcement.Digest,
@@ -395,6 +408,12 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
     if (_goodbyes->Has(passage.Sender, passage.Now))
     {
         return Verdict::Ignore;
+    }
+    const auto answer = _authority ? _authority->OfParticipant(passage.Sender, announcement, passage.Now)
+                                   : AuthorityCheck::Answer::Allowed;
+    if (answer != AuthorityCheck::Answer::Allowed)
+    {
+        return answer == AuthorityCheck::Answer::Forbidden ? Verdict::Refuse : Verdict::Ignore;
     }
     const bool isFromNetwork = passage.Whence == Origin::Network && passage.Sender != _own;
     if (_observer != nullptr && isFromNetwork)

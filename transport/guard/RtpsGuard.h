@@ -5,12 +5,15 @@
 // but one forged number far ahead silences a writer for it until one of the two is restarted.
 #pragma once
 
+#include <rabit/base/Assert.h>
+
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -20,6 +23,7 @@
 #include "common/RecentGoodbyes.h"
 #include "guard/AnnouncementReplies.h"
 #include "guard/AuthenticationThread.h"
+#include "guard/AuthorityCheck.h"
 #include "guard/DeliveryCheck.h"
 #include "guard/DiscoveryFragments.h"
 #include "guard/KnownPeers.h"
@@ -52,6 +56,7 @@ public:
     };
 
     using TimePoint = KnownPeers::TimePoint;
+    using Authority = Rtps::Authority;
     // It may change the bytes.
     using Deliver = std::function<void(std::span<std::uint8_t>)>;
 
@@ -85,6 +90,14 @@ public:
     // Sets what is told of announcements and handshakes, and decides with which of them the vendor begins an
     // authentication. For Mode::Protected; as for SetObserver.
     void SetAuthentication(AuthenticationThread &authentication) { _authentication = &authentication; }
+    // Sets what the certificates of participants say. An announcement that they do not allow is then refused,
+    // whether it comes from the network or in a card. A participant without a known certificate is ignored.
+    // For Mode::Full; as for SetObserver.
+    void SetAuthority(Authority authority)
+    {
+        RABIT_ASSERT(_mode == Mode::Full);
+        _authority.emplace(std::move(authority), _ledger);
+    }
     // Takes note of a card message. True if its sender's announcement was admitted and names that address.
     bool IsKnownAt(std::span<const std::uint8_t> cardMessage, const HostAddress &from);
     // When a participant was last heard; empty: its announcement has not been admitted.
@@ -131,6 +144,7 @@ private:
         Pass,
         Ignore,  // blanked: we do not use it
         Refuse,  // blanked and counted
+        Forbid,  // counted, and replaced by a GAP: the vendor waits for no number of a reliable writer
         Drop     // refuse the whole datagram, and count it
     };
 
@@ -165,7 +179,7 @@ private:
     // True if the ledger counts what comes from the sender.
     bool IsCounted(const Passage &passage) const { return _mode == Mode::Full && passage.Sender != _own; }
     void NoteVoice(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
-    Verdict JudgeEndpoint(const Announcement &announcement, const Passage &passage);
+    Verdict JudgeEndpoint(const Announcement &announcement, EntityId writer, const Passage &passage);
     void NoteEnd(const Delivery &delivery, EntityId subject, const Passage &passage);
     void NoteGoodbye(const Passage &passage);
     Verdict JudgeParticipant(const Announcement &announcement, std::int64_t number, const Passage &passage);
@@ -188,6 +202,7 @@ private:
     const std::shared_ptr<Ledger> _ledger;
     PeerObserver *_observer = nullptr;
     AuthenticationThread *_authentication = nullptr;
+    std::optional<AuthorityCheck> _authority;
     std::mutex _mutex;              // several sockets receive at once
     KnownPeers _peers;              // guarded by _mutex
     WalkBudget _walk;               // guarded by _mutex

@@ -1,6 +1,9 @@
 #include "guard/RtpsMessage.h"
 
+#include <rabit/base/Assert.h>
+
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 #include "common/RtpsWriter.h"
@@ -87,6 +90,33 @@ void Blank(const Submessage &submessage)
     // For padding a length of 0 means 0, for other kinds "to the end": the length is written out here.
     submessage.Whole[0] = static_cast<std::uint8_t>(SubmessageKind::Pad);
     Write(submessage.Whole.subspan(2, 2), submessage.Body().size(), submessage.LittleEndian);
+}
+
+void MakeGap(const Submessage &data)
+{
+    // 9.4.5.6: reader, writer, the first number, and a set without a bit that begins with the next number.
+    constexpr std::size_t gapSize = 2 * sizeof(EntityId) + 2 * SequenceSize + sizeof(std::uint32_t);
+    const auto whole = data.Whole;
+    RABIT_ASSERT(whole.size() >= SubmessageHeaderSize + gapSize + SubmessageHeaderSize);
+    RtpsReader body = data.Reader();
+    body.Skip(ReaderInData);
+    const auto entities = body.Bytes(2 * sizeof(EntityId));
+    const std::int64_t number = body.Sequence();
+    std::array<std::uint8_t, gapSize> gap{};
+    const auto rest = std::copy(entities.begin(), entities.end(), gap.begin());
+    const auto numbers = std::span(gap).subspan(static_cast<std::size_t>(rest - gap.begin()));
+    WriteSequence(numbers, number, data.LittleEndian);
+    WriteSequence(numbers.subspan(SequenceSize), number + 1, data.LittleEndian);
+    whole[0] = static_cast<std::uint8_t>(SubmessageKind::Gap);
+    whole[1] = data.LittleEndian ? LittleEndianFlag : std::uint8_t{0};
+    Write(whole.subspan(2, 2), gapSize, data.LittleEndian);
+    std::copy(gap.begin(), gap.end(), whole.begin() + SubmessageHeaderSize);
+    const auto padding = whole.subspan(SubmessageHeaderSize + gapSize);
+    padding[1] = whole[1];
+    Blank({.Kind = SubmessageKind::Pad,
+           .Flags = whole[1],
+           .LittleEndian = data.LittleEndian,
+           .Whole = padding});
 }
 
 }  // namespace Rabit::Rtps

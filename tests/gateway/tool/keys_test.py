@@ -285,6 +285,115 @@ def without_a_passphrase_one_line_says_how_to_give_it(shell):
     assert done.returncode == 1 and "(mode 644)" in done.stderr, done
 
 
+def a_sealed_fleet(shell):
+    shell.good("init", "--sealed")
+    shell.good("add", "uav1", "--config", "uav1.yaml")
+
+
+def a_sealed_fleet_is_made_in_two_commands(shell):
+    assert shell.good("init", "--sealed") == "keys: a new fleet\n"
+    lines = shell.good("add", "uav1", "--config", "uav1.yaml").splitlines()
+    assert lines[0].startswith("keys/uav1: valid until "), lines
+    assert [line.strip() for line in lines[1:]] == [
+        "writes rabit/Beat, rabit/Link, Pose", "reads rabit/Beat, rabit/Link, Pose"], lines
+    folder = shell.folder / "keys" / "uav1"
+    assert sorted(file.name for file in folder.iterdir()) == ["authority", "bulletin", "certificate", "key", "permissions"]
+    assert stat.S_IMODE((folder / "key").stat().st_mode) == 0o600
+
+
+def a_sealed_fleet_is_not_made_again(shell):
+    a_sealed_fleet(shell)
+    for words in (["init"], ["init", "--sealed"], ["add", "uav1", "--config", "uav1.yaml"]):
+        done = shell(*words)
+        assert done.returncode == 1 and "already" in done.stderr, done
+    for words in (["init", "--sealed", "--name", "x"], ["init", "--sealed", "--days", "9"]):
+        assert shell(*words).returncode == 2, words
+
+
+def a_sealed_check_compares_with_the_configuration(shell):
+    a_sealed_fleet(shell)
+    shell.good("check", "--config", "uav1.yaml")
+    shell.good("check", "keys/uav1")
+    (shell.folder / "uav1.yaml").write_text(CONFIG.replace("{message: Pose, type: Uav::Pose, qos", "{message: Photo, type: Uav::Pose, qos"))
+    done = shell("check", "--config", "uav1.yaml")
+    assert done.returncode == 1 and "problem: may not write Photo, which uav1.yaml wants" in done.stdout, done
+    assert "problem: may write Pose, which uav1.yaml does not want" in done.stdout, done
+    shell.good("renew", "uav1", "--config", "uav1.yaml")
+    shell.good("check", "--config", "uav1.yaml")
+
+
+def a_sealed_node_keeps_its_private_key(shell):
+    shell.good("init", "--sealed")
+    key = shell.good("request", "uav1", "--to", "there", "--sealed").split()[-1]
+    lines = shell.good("sign", "there/uav1.request.pem", "--config", "uav1.yaml").splitlines()
+    assert lines[-1].split() == ["key", key], lines
+    signed = shell.folder / "keys" / "uav1"
+    assert not any("PRIVATE KEY" in file.read_text() for file in signed.iterdir())
+    assert shell("check", "there").returncode == 1
+    assert "note: its private key is on the node alone" in shell.good("check", "keys/uav1")
+    for file in signed.iterdir():
+        (shell.folder / "there" / file.name).write_bytes(file.read_bytes())
+    shell.good("check", "there", "--config", "uav1.yaml")
+
+
+def a_request_of_the_other_format_is_one_line(shell):
+    a_sealed_fleet(shell)
+    done = shell("sign", shell.request("uav2", "there"), "--config", "uav1.yaml")
+    assert done.returncode == 1 and len(done.stderr.splitlines()) == 1 and "uav2.request.pem" in done.stderr, done
+
+
+def a_sealed_revocation_tells_how_it_reaches_the_fleet(shell):
+    a_sealed_fleet(shell)
+    shell.good("add", "laptop", "--tool")
+    done = shell("revoke", "laptop")
+    assert done.stdout == "laptop: 1 certificate is revoked\n", done
+    assert "the folder keys/laptop is removed" in done.stderr, done
+    assert sum("copy keys/authority/bulletin into the folder of any one node" in line for line in done.stderr.splitlines()) == 1, done
+    assert "laptop: revoked\n" in shell.good("check")
+    assert shell("renew", "laptop").returncode == 1
+
+
+def a_sealed_certificate_that_keeps_its_key_is_not_revoked(shell):
+    shell.good("init", "--sealed")
+    shell.good("request", "uav1", "--to", "there", "--sealed")
+    shell.good("sign", "there/uav1.request.pem", "--config", "uav1.yaml")
+    done = shell("renew", "uav1", "--revoke-old")
+    assert done.returncode == 1 and "keeps its key" in done.stderr, done
+
+
+def json_of_a_sealed_fleet_is_an_object_for_each_thing(shell):
+    def objects(*words):
+        return [json.loads(line) for line in shell.good(*words, "--json").splitlines()]
+    assert objects("init", "--sealed") == [{"folder": "keys", "encrypted": False}]
+    (added,) = objects("add", "uav1", "--config", "uav1.yaml")
+    assert list(added) == ["node", "folder", "until", "may"], added
+    (renewed,) = objects("renew", "uav1", "--revoke-old")
+    assert renewed["revoked"] == 1, renewed
+    objects("add", "laptop", "--tool")
+    told = objects("check")
+    assert [one["node"] for one in told] == ["laptop", "uav1"] and "reads everything" in told[0]["may"][1], told
+    assert all(not one["problems"] for one in told), told
+    assert objects("revoke", "uav1") == [{"node": "uav1", "revoked": 1}]
+
+
+def a_sealed_authority_asks_for_its_passphrase(shell):
+    assert "encrypted" in shell.good("init", "--sealed", "--passphrase-file", shell.secret("word", "open sesame\n"))
+    shell.good("add", "uav1", "--config", "uav1.yaml", "--passphrase-file", "word")
+    shell.good("check")
+    done = shell("add", "uav2", "--config", "uav1.yaml", "--passphrase-file", shell.secret("other", "wrong\n"))
+    assert done.returncode == 1 and "the passphrase does not open keys/authority/key" in done.stderr, done
+
+
+def keys_of_the_former_format_are_named(shell):
+    shell.fleet()
+    for folder in ("keys", "keys/uav1"):
+        assert "rabit keys init --sealed" in shell("check", folder).stderr
+    a_fleet = shell.folder / "keys"
+    a_fleet.rename(shell.folder / "former")
+    a_sealed_fleet(shell)
+    assert "former format" not in shell("check").stderr
+
+
 def main():
     program = pathlib.Path(sys.argv[1]).resolve()
     tests = [a_fleet_is_made_in_two_commands, what_is_there_is_not_made_again, wrong_usage_is_2,
@@ -297,7 +406,12 @@ def main():
              requests_of_several_nodes_are_signed_together, a_bad_request_leaves_all_unsigned,
              a_request_does_not_replace_a_node, a_passphrase_comes_from_a_file_a_pipe_or_the_environment,
              a_passphrase_is_typed_unseen, two_new_passphrases_that_differ_make_no_fleet,
-             without_a_passphrase_one_line_says_how_to_give_it]
+             without_a_passphrase_one_line_says_how_to_give_it,
+             a_sealed_fleet_is_made_in_two_commands, a_sealed_fleet_is_not_made_again,
+             a_sealed_check_compares_with_the_configuration, a_sealed_node_keeps_its_private_key,
+             a_request_of_the_other_format_is_one_line, a_sealed_revocation_tells_how_it_reaches_the_fleet,
+             a_sealed_certificate_that_keeps_its_key_is_not_revoked, json_of_a_sealed_fleet_is_an_object_for_each_thing,
+             a_sealed_authority_asks_for_its_passphrase, keys_of_the_former_format_are_named]
     failed = 0
     for test in tests:
         with tempfile.TemporaryDirectory() as folder:

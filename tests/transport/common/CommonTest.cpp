@@ -1,9 +1,11 @@
 // Tests of the parts that all backends share.
 #include <gmock/gmock.h>
 #include <rabit/base/Assert.h>
+#include <rabit/transport/FleetMember.h>
 
 #include <atomic>
 #include <chrono>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -238,6 +240,42 @@ TEST(Settings, OutOfRangeIsRefused)
     EXPECT_THROW(CheckSettings(bad([](auto &s) { s.Lease = s.AnnouncementPeriod; })), TransportError);
     EXPECT_THROW(CheckSettings(bad([](auto &s) { s.AnnouncementPeriod = std::chrono::milliseconds(0); })),
                  TransportError);
+}
+
+class MemberNamedUav1 final : public FleetMember
+{
+public:
+    const std::string &Name() const override { return _name; }
+    std::vector<SettingsProblem> Problems() const override { return {}; }
+
+private:
+    const std::string _name = "uav1";
+};
+
+TransportSettings SettingsOfAMember(const std::string &node)
+{
+    TransportSettings settings;
+    settings.Node = node;
+    settings.Member = std::make_shared<MemberNamedUav1>();
+    return settings;
+}
+
+TEST(Settings, AMemberHasTheNameInItsKeys)
+{
+    EXPECT_NO_THROW(CheckSettings(SettingsOfAMember("uav1")));
+    const auto problems = FindImpossible(SettingsOfAMember("uav2"));
+    ASSERT_THAT(problems, SizeIs(1));
+    EXPECT_EQ(problems[0].Setting, "security");
+    EXPECT_THAT(problems[0].Text, HasSubstr("uav1"));
+}
+
+TEST(Settings, AMemberDoesNotUseDdsSecurity)
+{
+    auto settings = SettingsOfAMember("uav1");
+    settings.Security.emplace();
+    const auto problems = FindImpossible(settings);
+    ASSERT_THAT(problems, SizeIs(1));
+    EXPECT_EQ(problems[0].Setting, "security");
 }
 
 TEST(Settings, AnInterfaceThatCanBeNoneIsImpossible)

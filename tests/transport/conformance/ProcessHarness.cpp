@@ -8,9 +8,11 @@
 #include <array>
 #include <csignal>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "../../Eventually.h"
+#include "envelope/Sealer.h"
 
 namespace Paths
 {
@@ -79,6 +81,15 @@ private:
 
 }  // namespace
 
+ProcessHarness::ProcessHarness(std::unique_ptr<Transport> backend, std::string fleet)
+    : _backend(std::move(backend)), _fleet(std::move(fleet))
+{
+    if (!_fleet.empty())
+    {
+        _members.emplace(_fleet);
+    }
+}
+
 TransportSettings ProcessHarness::SettingsFor(const std::string &node, std::uint64_t incarnation)
 {
     TransportSettings settings;
@@ -89,7 +100,16 @@ TransportSettings ProcessHarness::SettingsFor(const std::string &node, std::uint
     // Long, so that a slow machine does not lose a peer that lives.
     settings.Lease = std::chrono::seconds(60);
     settings.AnnouncementPeriod = std::chrono::milliseconds(500);
+    if (_members)
+    {
+        settings.Member = _members->Member(node);
+    }
     return settings;
+}
+
+std::size_t ProcessHarness::MostAdded() const
+{
+    return _members ? Envelope::Sealer::MostAdded : 0;
 }
 
 bool ProcessHarness::Until(const std::function<bool()> &condition)
@@ -99,9 +119,13 @@ bool ProcessHarness::Until(const std::function<bool()> &condition)
 
 std::unique_ptr<RemoteNode> ProcessHarness::StartRemote(const std::string &node, std::uint64_t incarnation)
 {
-    return std::make_unique<PeerProcess>(std::vector<std::string>{Paths::TransportPeer, _backend->Name(),
-                                                                  node, std::to_string(incarnation),
-                                                                  std::to_string(_domain.Domain())});
+    std::vector<std::string> arguments{Paths::TransportPeer, _backend->Name(), node,
+                                       std::to_string(incarnation), std::to_string(_domain.Domain())};
+    if (_members)
+    {
+        arguments.push_back(_fleet);
+    }
+    return std::make_unique<PeerProcess>(std::move(arguments));
 }
 
 }  // namespace Rabit::Conformance

@@ -3,6 +3,7 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -34,6 +35,8 @@ public:
     // Lets time pass until the condition holds. Returns false if it does not hold after a time in which
     // everything that should happen has happened, however slow the machine is.
     virtual bool Until(const std::function<bool()> &condition) = 0;
+    // The most bytes that the keys of the nodes add to a datagram; 0 without keys.
+    virtual std::size_t MostAdded() const { return 0; }
     // Starts a node elsewhere.
     virtual std::unique_ptr<RemoteNode> StartRemote(const std::string &node, std::uint64_t incarnation) = 0;
 };

@@ -140,8 +140,10 @@ TEST(SealPermissions, AllowWhatTheyNameAndNothingElse)
     EXPECT_FALSE(Permissions::Of({})->MayRead("Pose"));
 }
 
-TEST(SealPermissions, LetAToolWriteNothing)
+TEST(SealPermissions, LetAToolWriteTheGatewaysTopicsAlone)
 {
+    EXPECT_TRUE(ListOf("*", true, true)->MayWrite("rabit/Beat", CertificateRole::Tool));
+    EXPECT_FALSE(ListOf("Pose", true, true)->MayWrite("rabit/Beat", CertificateRole::Tool));
     EXPECT_FALSE(ListOf("*", true, true)->MayWrite("Pose", CertificateRole::Tool));
     EXPECT_TRUE(ListOf("*", true, true)->MayRead("Pose"));
 }

@@ -14,9 +14,16 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "../../Eventually.h"
+#include "../common/TestMembers.h"
+#include "ParticipantSettings.h"
+#include "common/SessionLog.h"
+#include "envelope/SealedSession.h"
+#include "envelope/Sealer.h"
 #include "guard/RtpsBytes.h"
 #include "guard/RtpsMessage.h"
 #include "rtps/DiscoverySubmessages.h"
@@ -125,11 +132,11 @@ std::shared_ptr<AuthenticationThread> ThatGivesUpSoon()
     return std::make_shared<AuthenticationThread>(true, std::chrono::milliseconds(20));
 }
 
-// With keys.
-class GuardedUdpTest : public testing::Test
+class UdpTest : public testing::Test
 {
 protected:
-    GuardedUdpTest()
+    explicit UdpTest(GuardedUdpDescriptor::Settings settings)
+        : _descriptor(_udpDescriptor, std::move(settings))
     {
         _udp->init();
         _udp->OpenOutputChannel(_sockets, At(DiscoveryPort));
@@ -137,9 +144,11 @@ protected:
         Own->Send(*_sockets.front(), ParticipantMessage(Other, DiscoveryPort), _nobody, _nobody,
                   RabitTest::WhenItHangs());
     }
+    // The vendor's statistics know only destinations that were named before.
+    void Name(std::uint32_t port) { _udp->OpenOutputChannel(_sockets, At(port)); }
     void Send(const Bytes &datagram, std::uint32_t port)
     {
-        _udp->OpenOutputChannel(_sockets, At(port));
+        Name(port);
         rtps::LocatorList list;
         list.push_back(At(port));
         rtps::Locators begin(list.begin());
@@ -151,36 +160,91 @@ protected:
         Own->receive(&to, datagram.data(), static_cast<std::uint32_t>(datagram.size()), At(port), At(1234));
     }
 
-private:
-    static GuardedUdpDescriptor::Settings Secured()
+    static GuardedUdpDescriptor::Settings Common()
     {
         GuardedUdpDescriptor::Settings settings;
         settings.MaxDatagram = 1400;
-        settings.Mode = RtpsGuard::Mode::Protected;
         settings.GroupPort = GroupPort;
         settings.OnDropped = [] {};
         settings.OnSent = [](bool, std::size_t, std::size_t) {};
         settings.Announce = [] {};
         settings.AnnouncementPeriod = std::chrono::seconds(1);
         settings.AnnounceAt = [](std::chrono::steady_clock::time_point) {};
-        settings.Keys = std::make_shared<KeyThread>(std::make_shared<DiscoveryTurns>(), settings.MaxDatagram);
-        settings.Authentication = ThatGivesUpSoon();
         return settings;
     }
 
+private:
     const std::shared_ptr<rtps::UDPv4TransportDescriptor> _udpDescriptor =
         std::make_shared<rtps::UDPv4TransportDescriptor>();
     const std::unique_ptr<rtps::TransportInterface> _udp{_udpDescriptor->create_transport()};
     rtps::SendResourceList _sockets;
     rtps::LocatorList _noLocators;
     rtps::Locators _nobody{_noLocators.begin()};
-    const GuardedUdpDescriptor _descriptor{_udpDescriptor, Secured()};
+    const GuardedUdpDescriptor _descriptor;
 
 protected:
     Port Discovery;
     Port Samples;
     const std::shared_ptr<Rabit::SendingTurn> Turn = _descriptor.Chosen().Sending;
     const std::unique_ptr<ChainedUdp> Own{static_cast<ChainedUdp *>(_descriptor.create_transport())};
+};
+
+// With DDS Security.
+class GuardedUdpTest : public UdpTest
+{
+protected:
+    GuardedUdpTest() : UdpTest(Secured()) {}
+
+private:
+    static GuardedUdpDescriptor::Settings Secured()
+    {
+        GuardedUdpDescriptor::Settings settings = Common();
+        settings.Mode = RtpsGuard::Mode::Protected;
+        settings.Keys = std::make_shared<KeyThread>(std::make_shared<DiscoveryTurns>(), settings.MaxDatagram);
+        settings.Authentication = ThatGivesUpSoon();
+        return settings;
+    }
+};
+
+// With a member of a fleet, which has met nobody.
+class SealedUdpTest : public UdpTest
+{
+protected:
+    SealedUdpTest() : SealedUdpTest(std::make_shared<Sockets>()) {}
+
+    static Bytes Sample(std::int64_t number, std::size_t size = 100)
+    {
+        return Join({Header(Other), Submessage(Data, DataBody(number, Bytes(size)), 5)});
+    }
+    std::size_t SentBytes() const { return _shared->SentBytes; }
+    // At the port at which another node takes discovery data.
+    Receiving &Usual() { return _shared->Usual; }
+
+private:
+    struct Sockets
+    {
+        std::size_t SentBytes = 0;
+        Receiving Usual;
+    };
+
+    explicit SealedUdpTest(const std::shared_ptr<Sockets> &sockets)
+        : UdpTest(Sealed(sockets)), _shared(sockets)
+    {
+        Name(_shared->Usual.Port());
+    }
+    static GuardedUdpDescriptor::Settings Sealed(const std::shared_ptr<Sockets> &sockets)
+    {
+        GuardedUdpDescriptor::Settings settings = Common();
+        settings.Seal = std::make_shared<Rabit::Envelope::SealedSession>(
+            Rabit::Conformance::TestMembers().Member("uav1"));
+        const Bytes header = Header(Other);
+        std::copy(header.begin(), header.end(), settings.Header.begin());
+        settings.OnSent = [sockets](bool, std::size_t, std::size_t bytes) { sockets->SentBytes += bytes; };
+        settings.DiscoveryPorts = {static_cast<std::uint16_t>(sockets->Usual.Port())};
+        return settings;
+    }
+
+    const std::shared_ptr<Sockets> _shared;
 };
 
 TEST_F(GuardedUdpTest, AGoodbyeThatIsMadeHereGoesWhereTheVendorTakesDiscovery)
@@ -243,6 +307,98 @@ TEST_F(GuardedUdpTest, SamplesOfATurnArriveAsTheyWereWrittenIfTogetherTheyEndLik
     const Bytes received = socket.Next();
     ASSERT_GT(received.size(), whole.size());
     EXPECT_TRUE(std::equal(whole.begin(), whole.end(), received.begin()));
+}
+
+TEST_F(SealedUdpTest, NothingOfAnAnnouncementCanBeReadOnTheWire)
+{
+    Receiving socket;
+    Send(WriterMessage(UserWriter, 1, Other), socket.Port());
+    const Bytes received = socket.Next();
+    EXPECT_GT(received.size(), WriterMessage(UserWriter, 1, Other).size());
+    for (const std::string_view text : {"RTPS", "Pose", "uav1"})
+    {
+        EXPECT_EQ(std::search(received.begin(), received.end(), text.begin(), text.end()), received.end())
+            << text;
+    }
+}
+
+// Other builds of the vendor have another minor version.
+TEST_F(SealedUdpTest, DatagramsOfAnotherMinorVersionAreSealed)
+{
+    Receiving socket;
+    Bytes sample = Sample(1);
+    sample[5] = 2;
+    Send(sample, socket.Port());
+    EXPECT_GT(socket.Next().size(), sample.size());
+}
+
+TEST_F(SealedUdpTest, EachDestinationGetsADatagramOfItsOwn)
+{
+    Receiving here;
+    Receiving there;
+    Send(Sample(1), here.Port());
+    Send(Sample(1), there.Port());
+    EXPECT_NE(here.Next(), there.Next());
+}
+
+TEST_F(SealedUdpTest, TheBytesThatAreSentAreCounted)
+{
+    Receiving socket;
+    Send(Sample(1), socket.Port());
+    EXPECT_EQ(socket.Next().size(), SentBytes());
+}
+
+TEST_F(SealedUdpTest, SamplesOfATurnAreSealedOnceAsOneDatagramThatIsNotTooLarge)
+{
+    constexpr std::size_t most = 600;
+    Receiving socket;
+    ASSERT_TRUE(Turn->Begin(most));
+    for (std::int64_t number = 1; number <= 4; ++number)
+    {
+        Send(Sample(number), socket.Port());
+    }
+    Turn->End();
+    const Bytes first = socket.Next();
+    const Bytes second = socket.Next();
+    EXPECT_GT(first.size(), 2 * Sample(1).size());
+    EXPECT_LE(first.size(), most);
+    EXPECT_EQ(first.size() + second.size(), SentBytes());
+}
+
+TEST_F(SealedUdpTest, StatisticsOfTheVendorAreNotSealed)
+{
+    Receiving socket;
+    const Bytes statistics = Submessage(Statistics, Bytes(StatisticsSize - SubmessageHeaderSize));
+    Send(Join({Sample(1), statistics}), socket.Port());
+    EXPECT_LE(socket.Next().size(), Sample(1).size() + Rabit::Envelope::Sealer::MostAdded);
+}
+
+TEST_F(SealedUdpTest, NothingThatIsNotSealedReachesTheVendor)
+{
+    Receive(Discovery, DiscoveryPort, ParticipantMessage(Sender));
+    Receive(Discovery, DiscoveryPort, WriterMessage());
+    Receive(Discovery, DiscoveryPort, {0});
+    EXPECT_EQ(Discovery.Count(), 0u);
+}
+
+// The vendor has sent nothing to anybody. The other node sends by another socket than it receives.
+TEST_F(SealedUdpTest, ANodeThatIsHeardAndNotKnownIsToldOfThisSession)
+{
+    Receive(Discovery, DiscoveryPort, {1, 2, 3});
+    EXPECT_GT(Usual().Next().size(), Rabit::Envelope::OuterSize);
+}
+
+TEST(SealedUdp, TheVendorLeavesRoomForTheSeal)
+{
+    Rabit::TransportSettings settings;
+    settings.Node = "uav1";
+    settings.Interfaces = {"127.0.0.1"};
+    settings.Member = Rabit::Conformance::TestMembers().Member("uav1");
+    const auto seal = std::make_shared<Rabit::Envelope::SealedSession>(settings.Member);
+    const auto attributes =
+        MakeParticipantAttributes(settings, std::make_shared<Rabit::SessionLog>(settings), {.Seal = seal});
+    ASSERT_EQ(attributes.userTransports.size(), 1u);
+    EXPECT_EQ(attributes.userTransports[0]->max_message_size() + seal->MostAdded(), settings.MaxDatagram);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <thread>
 
 #include "../conformance/TestSample.h"
+#include "envelope/Sealer.h"
 
 namespace Rabit::Conformance
 {
@@ -30,6 +31,20 @@ private:
 
 }  // namespace
 
+SimulatedHarness::SimulatedHarness(std::uint64_t seed, const std::string &fleet)
+    : _network(seed), _backend(_network)
+{
+    if (!fleet.empty())
+    {
+        _members.emplace(fleet);
+    }
+}
+
+std::size_t SimulatedHarness::MostAdded() const
+{
+    return _members ? Envelope::Sealer::MostAdded : 0;
+}
+
 TransportSettings SimulatedHarness::SettingsFor(const std::string &node, std::uint64_t incarnation)
 {
     TransportSettings settings;
@@ -37,6 +52,10 @@ TransportSettings SimulatedHarness::SettingsFor(const std::string &node, std::ui
     settings.Incarnation = incarnation;
     settings.Memory = settings.Lease = std::chrono::seconds(3);
     settings.AnnouncementPeriod = std::chrono::seconds(1);
+    if (_members)
+    {
+        settings.Member = _members->Member(node);
+    }
     return settings;
 }
 

@@ -7,6 +7,7 @@
 #include "CycloneWriter.h"
 #include "DomainConfig.h"
 #include "RemoteParticipant.h"
+#include "SealedTraffic.h"
 #include "SessionCore.h"
 #include "VendorDomain.h"
 #include "common/HostNetworks.h"
@@ -34,6 +35,10 @@ public:
     }
     void CheckConfig(const TransportSettings &settings) const override
     {
+        if (settings.Member != nullptr)
+        {
+            CheckSealable(settings);
+        }
         if (!settings.BackendConfig.empty())
         {
             CheckDomainConfig(settings);

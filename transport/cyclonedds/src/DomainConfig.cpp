@@ -22,6 +22,8 @@ constexpr int MostParticipants = 100;
 constexpr int ParticipantsPerPeer = 16;
 // Largest size of the vendor's headers in a datagram with a fragment of a sample.
 constexpr std::size_t HeaderRoom = 100;
+// The vendor's default for the largest datagram of a repair.
+constexpr std::size_t LargestRepair = 1456;
 // Size of the protection of a submessage: SEC_PREFIX, SEC_BODY and SEC_POSTFIX. The vendor sends a
 // HEARTBEAT_FRAG behind each fragment of a sample, in a datagram of its own if the fragment leaves no room.
 constexpr std::size_t SubmessageProtection = 56;
@@ -72,10 +74,10 @@ void AddPeers(const TransportSettings &settings, std::ostream &xml)
     for (const auto &peer : settings.Peers)
     {
         const PeerAddress address = ParsePeer(peer);
-        const int count = address.Port != 0 ? 1 : ParticipantsPerPeer;
-        for (int i = 0; i < count; ++i)
+        const auto ports = address.Port != 0 ? std::vector<std::uint16_t>{address.Port}
+                                             : UsualDiscoveryPorts(settings.Domain);
+        for (const std::uint16_t port : ports)
         {
-            const int port = address.Port != 0 ? address.Port : DiscoveryPort(settings.Domain, i);
             xml << "<Peer address=\"" << address.Host << ":" << port << "\"/>";
         }
     }
@@ -96,6 +98,16 @@ std::string Read(const std::string &path)
 
 }  // namespace
 
+std::vector<std::uint16_t> UsualDiscoveryPorts(int domain)
+{
+    std::vector<std::uint16_t> ports;
+    for (int i = 0; i < ParticipantsPerPeer; ++i)
+    {
+        ports.push_back(static_cast<std::uint16_t>(DiscoveryPort(domain, i)));
+    }
+    return ports;
+}
+
 bool HasOwnInterfaces(const std::string &configFile)
 {
     return !configFile.empty() && Read(configFile).find("<NetworkInterface") != std::string::npos;
@@ -112,9 +124,9 @@ Rtps::RtpsGuard::Mode GuardMode(const TransportSettings &settings)
                                     : Mode::Full;
 }
 
-std::string MakeDomainConfig(const TransportSettings &settings)
+std::string MakeDomainConfig(const TransportSettings &settings, std::size_t added)
 {
-    const std::size_t largest = settings.MaxDatagram - (settings.Security ? SecurityRoom : 0);
+    const std::size_t largest = settings.MaxDatagram - (settings.Security ? SecurityRoom : 0) - added;
     std::ostringstream xml;
     xml.imbue(std::locale::classic());  // the program's own may write 1400 as 1,400
     xml << "<Domain><General>";
@@ -129,6 +141,9 @@ std::string MakeDomainConfig(const TransportSettings &settings)
         << "</AllowMulticast>"
         << "<DontRoute>" << (IsRoutingNeeded(settings) ? "false" : "true") << "</DontRoute>"
         << "<MaxMessageSize>" << largest << "B</MaxMessageSize>"
+        << (added > 0 ? "<MaxRexmitMessageSize>" + std::to_string(std::min(largest, LargestRepair)) +
+                            "B</MaxRexmitMessageSize>"
+                      : std::string())
         << "<FragmentSize>" << largest - HeaderRoom - (settings.Security ? 2 * SubmessageProtection : 0)
         << "B</FragmentSize></General>"
         // Between sessions that share a domain, the vendor delivers samples inside Write. So each session has

@@ -2,7 +2,10 @@
 
 #include <rabit/transport/Transport.h>
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "guard/RtpsGuard.h"
 
@@ -10,8 +13,12 @@ namespace Rabit::Cyclone
 {
 
 // Returns the vendor's configuration text for the settings, overridden by TransportSettings::BackendConfig.
-// Interfaces, and the hosts of Peers, are addresses. Throws TransportError if the file cannot be read.
-std::string MakeDomainConfig(const TransportSettings &settings);
+// Interfaces, and the hosts of Peers, are addresses. `added`: the bytes by which a seal may lengthen a
+// datagram. Throws TransportError if the file cannot be read.
+std::string MakeDomainConfig(const TransportSettings &settings, std::size_t added);
+
+// The ports at which the participants of one host and domain are looked for if a peer has no port.
+std::vector<std::uint16_t> UsualDiscoveryPorts(int domain);
 
 // True if a configuration file is given and names interfaces. They then replace our list: the vendor would
 // join the two and refuse an interface that is in both. Throws TransportError if the file cannot be read.

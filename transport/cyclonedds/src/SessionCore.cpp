@@ -244,6 +244,12 @@ void SessionCore::PeerAppeared(const Rtps::GuidPrefix &prefix, const dds_qos_t *
     dds_qget_entity_name(qos, &name);
     const ParticipantIdentity announced{name != nullptr ? name : "", *incarnation};
     dds_free(name);
+    // The vendor may have read a datagram before its sockets were watched.
+    if (!_domain.MayBe(prefix, announced.Node))
+    {
+        Log()->Impostor(announced.Node);
+        return;
+    }
     Appeared(prefix, announced, PlaceOf(prefix));
 }
 

@@ -12,6 +12,7 @@
 #include "AnnouncedEndpoints.h"
 #include "DomainConfig.h"
 #include "Guid.h"
+#include "Places.h"
 #include "SampleBurst.h"
 #include "VendorLog.h"
 #include "VendorTraffic.h"
@@ -113,9 +114,61 @@ void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span
 void VendorDomain::Send(const RabitCycloneRoute &route, RabitCycloneTo to,
                         std::span<const std::uint8_t> datagram)
 {
-    if (RabitCycloneSend(_watch, &route, to, datagram.data(), datagram.size()))
+    const std::size_t sent = RabitCycloneSend(_watch, &route, to, datagram.data(), datagram.size());
+    if (sent > 0)
     {
-        OnSent(this, datagram.data(), datagram.size(), datagram.size());
+        OnSent(this, datagram.data(), datagram.size(), sent);
+    }
+}
+
+std::vector<RabitCycloneRoute> VendorDomain::WaysOfSealed(const std::optional<Rtps::Place> &to) const
+{
+    std::vector<RabitCycloneRoute> routes;
+    const auto add = [&](const Rtps::Place &place)
+    {
+        const RabitCyclonePlace there = ToCyclonePlace(place);
+        routes.push_back(RabitCycloneRouteTo(_watch, &there));
+    };
+    const bool isAnnounced = to && _accounts->IsAnnounced(*to);
+    if (isAnnounced)
+    {
+        add(*to);
+    }
+    else if (to && !_multicast)
+    {
+        for (const std::uint16_t port : _usualPorts)
+        {
+            add({.Host = to->Host, .Port = port});
+        }
+    }
+    else
+    {
+        RabitCycloneAnnouncedRoutes(
+            _watch,
+            [](const RabitCycloneRoute *route, void *argument)
+            { static_cast<std::vector<RabitCycloneRoute> *>(argument)->push_back(*route); },
+            &routes);
+        // As MaySend.
+        std::erase_if(routes,
+                      [this](const RabitCycloneRoute &route)
+                      {
+                          const auto address = std::to_array(route.address);
+                          return _multicast && !IsGroup(address) && !_direct.MayGo(address);
+                      });
+    }
+    return routes;
+}
+
+void VendorDomain::SendSealed(const std::optional<Rtps::Place> &to, std::span<const std::uint8_t> sealed)
+{
+    for (const RabitCycloneRoute &route : WaysOfSealed(to))
+    {
+        const RabitCyclonePlace end = EndOf(route);
+        if (MayGo(this, &end, sealed.size(), false) &&
+            RabitCycloneSendSealed(_watch, &route, sealed.data(), sealed.size()))
+        {
+            _log->SentDiscovery(1, sealed.size());
+        }
     }
 }
 
@@ -267,32 +320,32 @@ bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t s
     auto &domain = *static_cast<VendorDomain *>(self);
     HeldDatagrams::Scope *const held = HeldDatagrams::OfThisThread();
     return held != nullptr &&
-           held->Keep(HeldDatagrams::IpAndUdp + size,
-                      [&domain, to = *route, bytes = std::vector<std::uint8_t>(datagram, datagram + size)]
-                      {
-                          const SendingSamples sending;
-                          RabitCyclonePlace place{.address = {}, .port = to.port};
-                          std::copy_n(to.address, sizeof place.address, place.address);
-                          if (!MayGo(&domain, &place, bytes.size(), true))
-                          {
-                              return;
-                          }
-                          const auto send = [&domain, &to, &bytes](RabitCycloneTo where)
-                          {
-                              domain._sending->IsOfThisThread()
-                                  ? Take(&domain, bytes.data(), bytes.size(), &to, where)
-                                  : domain.Send(to, where, bytes);
-                          };
-                          const RabitCycloneWays ways = WaysTo(&domain, to.address);
-                          if (ways.group)
-                          {
-                              send(RabitCycloneToSampleGroup);
-                          }
-                          if (ways.host)
-                          {
-                              send(RabitCycloneToHost);
-                          }
-                      });
+           held->Keep(
+               HeldDatagrams::IpAndUdp + size + (domain._seal != nullptr ? domain._seal->MostAdded() : 0),
+               [&domain, to = *route, bytes = std::vector<std::uint8_t>(datagram, datagram + size)]
+               {
+                   const SendingSamples sending;
+                   const RabitCyclonePlace place = EndOf(to);
+                   if (!MayGo(&domain, &place, bytes.size(), true))
+                   {
+                       return;
+                   }
+                   const auto send = [&domain, &to, &bytes](RabitCycloneTo where)
+                   {
+                       domain._sending->IsOfThisThread()
+                           ? Take(&domain, bytes.data(), bytes.size(), &to, where)
+                           : domain.Send(to, where, bytes);
+                   };
+                   const RabitCycloneWays ways = WaysTo(&domain, to.address);
+                   if (ways.group)
+                   {
+                       send(RabitCycloneToSampleGroup);
+                   }
+                   if (ways.host)
+                   {
+                       send(RabitCycloneToHost);
+                   }
+               });
 }
 
 bool VendorDomain::IsInTurn(void *self)
@@ -307,8 +360,14 @@ void VendorDomain::Take(void *self, const unsigned char *datagram, std::size_t s
     const auto make = [&domain, route, to](std::size_t most)
     {
         return std::make_unique<Rtps::MergedDatagram>(
-            most, [&domain, way = *route, to](std::vector<std::uint8_t> &message)
-            { RabitCycloneSend(domain._watch, &way, to, message.data(), message.size()); });
+            domain.Unsealed(most),
+            [&domain, way = *route, to](std::vector<std::uint8_t> &message)
+            {
+                // The message itself is counted below.
+                const std::size_t sent =
+                    RabitCycloneSend(domain._watch, &way, to, message.data(), message.size());
+                domain._log->SentSamples(0, sent - std::min(sent, message.size()));
+            });
     };
     const auto grown = domain._sending->Take(WayOf(*route, to), {datagram, size}, make);
     domain._log->SentSamples(grown.Datagrams, grown.Bytes);
@@ -328,12 +387,17 @@ RabitCycloneWays VendorDomain::WaysTo(void *self, const unsigned char *address)
 bool VendorDomain::MayGo(void *self, const RabitCyclonePlace *place, std::size_t size, bool samples)
 {
     auto &domain = *static_cast<VendorDomain *>(self);
-    Rtps::Place to{.Host = {}, .Port = static_cast<std::uint16_t>(place->port)};
-    std::copy_n(place->address, to.Host.size(), to.Host.begin());
+    const Rtps::Place to = ToPlace(*place);
     return IsGroup(to.Host) ||
            domain._guard.MayGo(to, size,
                                samples ? Rtps::Ledger::Cargo::Samples : Rtps::Ledger::Cargo::Discovery,
                                domain._addresses, std::chrono::steady_clock::now());
+}
+
+RabitCycloneSealed VendorDomain::Seal(void *self, const ddsrt_iovec_t *part, std::size_t parts,
+                                      const RabitCyclonePlace *to)
+{
+    return static_cast<VendorDomain *>(self)->_seal->Seal({part, parts}, to);
 }
 
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
@@ -345,7 +409,7 @@ void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t hea
         return;
     }
     domain._log->SentSamples(1, size);
-    if (domain._secured)
+    if (domain._secured || domain._seal != nullptr)
     {
         thread_local SampleBurst burst;
         if (const auto pause = burst.Sent(size, std::chrono::steady_clock::now()); pause.count() > 0)
@@ -379,13 +443,18 @@ std::size_t VendorDomain::Admit(std::span<std::uint8_t> buffer, std::size_t size
 }
 
 std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::size_t size,
-                                     std::size_t capacity, const unsigned char *from, bool direct)
+                                     std::size_t capacity, const RabitCyclonePlace *from, bool direct)
 {
     auto &domain = *static_cast<VendorDomain *>(self);
-    Rtps::HostAddress host = Rtps::UnknownHost;
-    if (from != nullptr)
+    const Rtps::Place source = from != nullptr ? ToPlace(*from) : Rtps::Place{};
+    const Rtps::HostAddress &host = source.Host;
+    if (domain._seal != nullptr)
     {
-        std::copy_n(from, host.size(), host.begin());
+        size = domain._seal->Open({datagram, size}, source);
+        if (size == 0)
+        {
+            return domain.JoinDelivered({datagram, capacity}, 0);
+        }
     }
     if (domain._meets && Rtps::IsCardMessage({datagram, size}))
     {
@@ -425,7 +494,7 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     const Announcing announcing = AnnouncingOf({datagram, admitted});
     if (announcing.Alone && direct && from != nullptr)
     {
-        domain._direct.OnAnnouncement({from[0], from[1], from[2], from[3]});
+        domain._direct.OnAnnouncement(host);
     }
     if (announcing.Any)
     {
@@ -450,9 +519,12 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                turns),
       _cardRoutes(settings.AnnouncementPeriod),
       _goodbyes(std::move(goodbyes)),
+      _accounts(std::move(accounts)),
+      _usualPorts(UsualDiscoveryPorts(settings.Domain)),
       // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Vendor::CycloneDds, _goodbyes,
-             std::move(accounts)),
+             _accounts),
+      _seal(MakeSeal(settings)),
       _keys(turns, settings.MaxDatagram)
 {
     if (_secured)
@@ -471,7 +543,15 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
         _authentication.Prepare();
         _guard.SetAuthentication(_authentication);
     }
-    const std::string config = MakeDomainConfig(settings);
+    if (_seal != nullptr)
+    {
+        const Envelope::SealedSession &session = _seal->Session();
+        _guard.SetAuthority(
+            {.May = [&session](const Rtps::GuidPrefix &peer, bool write, std::string_view topic)
+             { return write ? session.MayWrite(peer, topic) : session.MayRead(peer, topic); },
+             .NameOf = [&session](const Rtps::GuidPrefix &peer) { return session.NameOf(peer); }});
+    }
+    const std::string config = MakeDomainConfig(settings, _seal != nullptr ? _seal->MostAdded() : 0);
     if (settings.Security && Id() != static_cast<dds_domainid_t>(settings.Domain))
     {
         throw TransportError("with security, Cyclone DDS can be in domain " +
@@ -516,8 +596,10 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                                 .take = &Take,
                                 .waysTo = &WaysTo,
                                 .mayGo = &MayGo,
+                                .seal = _seal != nullptr ? &Seal : nullptr,
                                 .sent = &OnSent,
                                 .received = &OnReceived});
+    CheckSeal(settings);
     _meets = _meets && _watch != nullptr;
     if (_meets)
     {
@@ -543,6 +625,36 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     }
 }
 
+std::unique_ptr<SealedTraffic> VendorDomain::MakeSeal(const TransportSettings &settings)
+{
+    if (settings.Member == nullptr)
+    {
+        return nullptr;
+    }
+    CheckSealable(settings);
+    return std::make_unique<SealedTraffic>(
+        settings.Member,
+        Envelope::SealedSession::Calls{
+            .Send = [this](const auto &to, auto sealed) { SendSealed(to, sealed); },
+            .Log = [log = _log](const std::string &line) { log->Line(line); }});
+}
+
+void VendorDomain::CheckSeal(const TransportSettings &settings)
+{
+    const char *const why =
+        _watch == nullptr ? "its sockets cannot be watched" : RabitCyclonePassesBy(_watch);
+    if (_seal == nullptr || why == nullptr)
+    {
+        return;
+    }
+    _entity.Reset();
+    RabitCycloneUnwatch(_watch);
+    VendorLog::Leave(Id());
+    throw TransportError("the keys cannot protect all datagrams with the configuration " +
+                             settings.BackendConfig + " of Cyclone DDS: " + why,
+                         "backend_config");
+}
+
 void VendorDomain::Announce(const ddsi_guid_t &participant) const
 {
     if (_watch != nullptr)
@@ -561,6 +673,10 @@ VendorDomain::~VendorDomain()
     _authentication.Stop();
     _meeting.Stop();
     _keys.Stop();
+    if (_seal != nullptr)
+    {
+        _seal->Stop();
+    }
     _entity.Reset();
     RabitCycloneUnwatch(_watch);
     VendorLog::Leave(Id());

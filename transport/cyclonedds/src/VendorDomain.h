@@ -3,17 +3,21 @@
 #include <dds/ddsi/ddsi_guid.h>
 #include <rabit/transport/Transport.h>
 
+#include <algorithm>
 #include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "DirectAnnouncements.h"
 #include "Entity.h"
 #include "RemoteParticipant.h"
 #include "RouteOrder.h"
+#include "SealedTraffic.h"
 #include "common/HardwareAddresses.h"
 #include "common/KeyExchangeThread.h"
 #include "common/ProcessNumber.h"
@@ -70,6 +74,11 @@ public:
     {
         return _authentication.WasForgotten(participant);
     }
+    // True if a participant may call itself `node`: its certificate says so, or this session has no member.
+    bool MayBe(const Rtps::GuidPrefix &participant, const std::string &node) const
+    {
+        return _seal == nullptr || _seal->Session().NameOf(participant) == node;
+    }
 
 private:
     static bool MaySend(void *self, unsigned char *datagram, std::size_t size,
@@ -81,9 +90,20 @@ private:
                      const RabitCycloneRoute *route, RabitCycloneTo to);
     static RabitCycloneWays WaysTo(void *self, const unsigned char *address);
     static bool MayGo(void *self, const RabitCyclonePlace *place, std::size_t size, bool samples);
+    static RabitCycloneSealed Seal(void *self, const ddsrt_iovec_t *part, std::size_t parts,
+                                   const RabitCyclonePlace *to);
     static void OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size);
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
-                                  const unsigned char *from, bool direct);
+                                  const RabitCyclonePlace *from, bool direct);
+    // Null: the session has no member. Throws TransportError.
+    std::unique_ptr<SealedTraffic> MakeSeal(const TransportSettings &settings);
+    // Throws TransportError if a datagram could pass by the seal; the domain is then gone.
+    void CheckSeal(const TransportSettings &settings);
+    // Bytes of a message that has at most `most` bytes when it is sent.
+    std::size_t Unsealed(std::size_t most) const
+    {
+        return _seal == nullptr ? most : most - std::min(most, _seal->MostAdded());
+    }
     // The domain's participant; zero before it has announced itself.
     ddsi_guid_t OwnParticipant();
     // RabitCycloneHasKeysOf, RabitCycloneAsk
@@ -97,6 +117,12 @@ private:
     void Send(const RabitCycloneRoute &route, RabitCycloneTo to, std::span<const std::uint8_t> datagram);
     // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram);
+    // The ways by which the participant is announced, or those to one place. A place that no participant has
+    // announced is a socket of the vendor's, which receives nothing: its host is reached at the usual ports,
+    // or by the group.
+    std::vector<RabitCycloneRoute> WaysOfSealed(const std::optional<Rtps::Place> &to) const;
+    // Runs on the seal's thread.
+    void SendSealed(const std::optional<Rtps::Place> &to, std::span<const std::uint8_t> sealed);
     // Runs on the meeting's thread.
     void DeliverCard(const Rtps::HostAddress &from, std::span<std::uint8_t> datagram);
     // Puts messages from cards before a received datagram.
@@ -119,9 +145,12 @@ private:
     std::vector<std::vector<std::uint8_t>> _delivered;  // for the vendor; guarded by _cardMutex
     DirectAnnouncements _direct;
     const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes;
+    const std::shared_ptr<Rtps::Ledger> _accounts;
+    const std::vector<std::uint16_t> _usualPorts;  // UsualDiscoveryPorts
     Rtps::AuthenticationThread _authentication;
     Rtps::RtpsGuard _guard;
     HardwareAddresses _addresses;
+    const std::unique_ptr<SealedTraffic> _seal;  // null: the session has no member
     KeyExchangeThread<RabitCycloneRoute, RouteOrder> _keys;
     Entity _entity;
 };

@@ -92,10 +92,48 @@ static size_t SizeOf(size_t parts, const ddsrt_iovec_t *part)
     return size;
 }
 
+static struct RabitCyclonePlace PlaceOf(const ddsi_locator_t *locator)
+{
+    struct RabitCyclonePlace place = {.port = locator->port};
+    memcpy(place.address, locator->address + AddressAt, sizeof place.address);
+    return place;
+}
+
+static bool IsGroup(const ddsi_locator_t *locator)
+{
+    /* The first byte of a multicast address is 224 to 239. */
+    return (locator->address[AddressAt] & 0xf0) == 0xe0;
+}
+
+/* The vendor and RabitCycloneWake wake a thread by one zero byte. */
+static bool IsWakeUp(size_t parts, const ddsrt_iovec_t *part)
+{
+    return parts == 1 && part[0].iov_len == 1 && *(const unsigned char *)part[0].iov_base == 0;
+}
+
+/* Gives a datagram to a socket, sealed if the session has keys. Returns the bytes that the socket got; 0: the
+ * datagram must not be sent. */
+static ssize_t Give(const struct Watch *watch, ddsi_tran_conn_t connection, const ddsi_locator_t *destination,
+                    size_t parts, const ddsrt_iovec_t *part, uint32_t flags)
+{
+    if (watch->calls.seal == NULL || IsWakeUp(parts, part))
+    {
+        return watch->write(connection, destination, parts, part, flags);
+    }
+    if (destination->kind != NN_LOCATOR_KIND_UDPv4)
+    {
+        return 0;
+    }
+    const struct RabitCyclonePlace place = PlaceOf(destination);
+    const struct RabitCycloneSealed sealed =
+        watch->calls.seal(watch->calls.argument, part, parts, IsGroup(destination) ? NULL : &place);
+    const ddsrt_iovec_t whole = {(void *)sealed.bytes, sealed.size};
+    return sealed.size == 0 ? 0 : watch->write(connection, destination, 1, &whole, flags);
+}
+
 static bool MayGo(const struct Watch *watch, const ddsi_locator_t *destination, size_t size, bool samples)
 {
-    struct RabitCyclonePlace place = {.port = destination->port};
-    memcpy(place.address, destination->address + AddressAt, sizeof place.address);
+    const struct RabitCyclonePlace place = PlaceOf(destination);
     return destination->kind != NN_LOCATOR_KIND_UDPv4 ||
            watch->calls.mayGo(watch->calls.argument, &place, size, samples);
 }
@@ -127,7 +165,7 @@ static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connec
     if (size > sizeof datagram)
     {
         return MayGo(watch, destination, size, false)
-                   ? watch->write(connection, destination, parts, part, flags)
+                   ? Give(watch, connection, destination, parts, part, flags)
                    : 0;
     }
     const ddsrt_iovec_t whole = {datagram, Gather(datagram, sizeof datagram, parts, part)};
@@ -137,7 +175,7 @@ static ssize_t WriteDiscovery(const struct Watch *watch, ddsi_tran_conn_t connec
     {
         return 0;
     }
-    return watch->write(connection, destination, 1, &whole, flags);
+    return Give(watch, connection, destination, 1, &whole, flags);
 }
 
 /* Returns true if the datagram is held. */
@@ -175,18 +213,12 @@ static ssize_t WriteSamples(const struct Watch *watch, ddsi_tran_conn_t connecti
             return (ssize_t)whole;
         }
     }
-    const ssize_t size = watch->write(connection, destination, parts, part, flags);
+    const ssize_t size = Give(watch, connection, destination, parts, part, flags);
     if (size > 0)
     {
         watch->calls.sent(watch->calls.argument, head, headSize, (size_t)size);
     }
     return size;
-}
-
-static bool IsGroup(const ddsi_locator_t *locator)
-{
-    /* The first byte of a multicast address is 224 to 239. */
-    return (locator->address[AddressAt] & 0xf0) == 0xe0;
 }
 
 /* Sends samples to the group. `participant`: prefix of their only addressee, added if they name none; NULL:
@@ -256,8 +288,9 @@ static ssize_t WriteOne(ddsi_tran_conn_t connection, const ddsi_locator_t *desti
         size = WriteSamples(&watch, connection, destination, RabitCycloneToHost, parts, part, flags, head,
                             filled);
     }
-    /* Datagrams that are not sent are reported to the vendor as sent. */
-    return size == 0 ? (ssize_t)whole : size;
+    /* Datagrams that are not sent are reported to the vendor as sent, and sealed ones in the size that it
+     * knows. */
+    return size < 0 ? size : (ssize_t)whole;
 }
 
 static bool IsSame(const ddsi_locator_t *one, const ddsi_locator_t *other)
@@ -373,11 +406,11 @@ static ssize_t ReadAndTell(ddsi_tran_conn_t connection, unsigned char *buffer, s
     {
         return got;
     }
+    const bool isKnown = source != NULL && source->kind == NN_LOCATOR_KIND_UDPv4;
+    const struct RabitCyclonePlace from = isKnown ? PlaceOf(source) : (struct RabitCyclonePlace){.port = 0};
     /* The vendor ignores a datagram of no bytes. */
-    return (ssize_t)watch.calls.received(
-        watch.calls.argument, buffer, (size_t)got, size,
-        source == NULL || source->kind != NN_LOCATOR_KIND_UDPv4 ? NULL : source->address + AddressAt,
-        connection == watch.domain->disc_conn_uc);
+    return (ssize_t)watch.calls.received(watch.calls.argument, buffer, (size_t)got, size,
+                                         isKnown ? &from : NULL, connection == watch.domain->disc_conn_uc);
 }
 
 struct Copy
@@ -395,7 +428,10 @@ static void CopyLocator(const ddsi_xlocator_t *locator, void *argument)
 void *RabitCycloneWatch(struct RabitCycloneCalls calls)
 {
     struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&lookup_thread_state()->gv);
-    struct Watch *watch = domain == NULL || domain->n_interfaces < 1 ? NULL : malloc(sizeof *watch);
+    /* Without UDP there may be no such sockets. */
+    const bool hasSockets = domain != NULL && domain->n_interfaces > 0 && domain->xmit_conns[0] != NULL &&
+                            domain->disc_conn_uc != NULL;
+    struct Watch *watch = hasSockets ? malloc(sizeof *watch) : NULL;
     if (watch == NULL)
     {
         return NULL;
@@ -425,12 +461,78 @@ void *RabitCycloneWatch(struct RabitCycloneCalls calls)
                                   domain->data_conn_uc};
     for (size_t i = 0; i < sizeof reading / sizeof reading[0]; ++i)
     {
-        if (reading[i] != NULL && reading[i]->m_read_fn == watch->read)
+        if (reading[i] == NULL)
+        {
+            continue;
+        }
+        if (reading[i]->m_read_fn == watch->read)
         {
             __atomic_store_n(&reading[i]->m_read_fn, ReadAndTell, __ATOMIC_RELEASE);
         }
+        /* The vendor sends nothing by these sockets. */
+        if (calls.seal != NULL && reading[i]->m_write_fn == watch->write)
+        {
+            reading[i]->m_write_fn = WriteAndTell;
+        }
     }
     return watch;
+}
+
+static bool IsEachWatched(const struct ddsi_domaingv *domain)
+{
+    for (int i = 0; i < domain->n_interfaces; ++i)
+    {
+        if (domain->xmit_conns[i] == NULL || domain->xmit_conns[i]->m_write_fn != WriteAndTell)
+        {
+            return false;
+        }
+    }
+    const ddsi_tran_conn_t reading[] = {domain->disc_conn_mc, domain->disc_conn_uc, domain->data_conn_mc,
+                                        domain->data_conn_uc};
+    for (size_t i = 0; i < sizeof reading / sizeof reading[0]; ++i)
+    {
+        if (reading[i] != NULL && reading[i]->m_read_fn != ReadAndTell)
+        {
+            return false;
+        }
+    }
+    return true;
+}
+
+const char *RabitCyclonePassesBy(const void *watch)
+{
+    const struct ddsi_domaingv *domain = RabitCycloneDomainOf(watch);
+    const struct ddsi_config *config = &domain->config;
+    if (domain->loc_meta_uc.kind != NN_LOCATOR_KIND_UDPv4 || domain->listener != NULL)
+    {
+        return "its transport is not UDP over IPv4";
+    }
+    if (config->many_sockets_mode != DDSI_MSM_SINGLE_UNICAST)
+    {
+        return "ManySocketsMode is not single";
+    }
+    if (config->monitor_port >= 0)
+    {
+        return "it has a MonitorPort";
+    }
+    /* At the end of its deafness the vendor opens further sockets. */
+    if (config->initial_deaf)
+    {
+        return "it is Deaf at first";
+    }
+#ifdef DDS_HAS_SHM
+    if (config->enable_shm)
+    {
+        return "it has SharedMemory";
+    }
+#endif
+#ifdef DDS_HAS_SECURITY
+    if (config->omg_security_configuration != NULL)
+    {
+        return "it has Security";
+    }
+#endif
+    return IsEachWatched(domain) ? NULL : "a socket is of another kind";
 }
 
 void RabitCycloneUnwatch(void *watch)
@@ -520,18 +622,32 @@ int RabitCycloneDestinations(const struct ddsi_sertype *type, const ddsi_guid_t 
     return count;
 }
 
-bool RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
-                      const unsigned char *datagram, size_t size)
+static ddsi_locator_t LocatorOf(const struct Watch *watch, const struct RabitCycloneRoute *route)
+{
+    ddsi_locator_t locator = watch->domain->loc_default_mc;
+    locator.kind = NN_LOCATOR_KIND_UDPv4;
+    locator.port = route->port;
+    memset(locator.address, 0, sizeof locator.address);
+    memcpy(locator.address + AddressAt, route->address, sizeof route->address);
+    return locator;
+}
+
+size_t RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
+                        const unsigned char *datagram, size_t size)
 {
     const struct Watch *of = watch;
-    ddsi_locator_t destination = of->domain->loc_default_mc;
-    if (to == RabitCycloneToHost)
-    {
-        destination.kind = NN_LOCATOR_KIND_UDPv4;
-        destination.port = route->port;
-        memset(destination.address, 0, sizeof destination.address);
-        memcpy(destination.address + AddressAt, route->address, sizeof route->address);
-    }
+    const ddsi_locator_t destination =
+        to == RabitCycloneToHost ? LocatorOf(of, route) : of->domain->loc_default_mc;
+    const ddsrt_iovec_t whole = {(void *)datagram, size};
+    const ssize_t given = Give(of, route->connection, &destination, 1, &whole, 0);
+    return given > 0 ? (size_t)given : 0;
+}
+
+bool RabitCycloneSendSealed(const void *watch, const struct RabitCycloneRoute *route,
+                            const unsigned char *datagram, size_t size)
+{
+    const struct Watch *of = watch;
+    const ddsi_locator_t destination = LocatorOf(of, route);
     const ddsrt_iovec_t whole = {(void *)datagram, size};
     return of->write(route->connection, &destination, 1, &whole, 0) > 0;
 }

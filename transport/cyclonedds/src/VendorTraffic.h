@@ -3,6 +3,7 @@
 
 #include <dds/ddsi/ddsi_guid.h>
 #include <dds/ddsi/ddsi_sertype.h>
+#include <dds/ddsrt/iovec.h>
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -35,6 +36,13 @@ extern "C"
         bool group;
     };
 
+    /* A sealed datagram. */
+    struct RabitCycloneSealed
+    {
+        const unsigned char *bytes;
+        size_t size;
+    };
+
     /* Calls made for each datagram, on any thread. A head is its beginning, up to 128 bytes. */
     struct RabitCycloneCalls
     {
@@ -60,13 +68,18 @@ extern "C"
         /* True if a datagram of that size may go to the address. If not, the vendor is told that it was
            sent. */
         bool (*mayGo)(void *argument, const struct RabitCyclonePlace *place, size_t size, bool samples);
-        /* The datagram was given to a socket. */
+        /* Seals a datagram, whose parts follow each other, for a place; for a group if `to` is NULL. The
+           result is valid until this thread's next call. Its size is 0 if the datagram must not be sent.
+           NULL: datagrams are sent as they are. */
+        struct RabitCycloneSealed (*seal)(void *argument, const ddsrt_iovec_t *part, size_t parts,
+                                          const struct RabitCyclonePlace *to);
+        /* A datagram was given to a socket. `head`: before it was sealed; `size`: as the socket got it. */
         void (*sent)(void *argument, const unsigned char *head, size_t headSize, size_t size);
         /* A datagram was received, into a buffer of that capacity, where it may be changed in place. Returns
-           the size of the part that the vendor may see; 0: nothing. `from` is NULL if unknown. `direct`: it
-           was sent to us alone, for discovery. */
+           the size of the part that the vendor may see; 0: nothing. `from`: the socket that sent it; NULL if
+           unknown. `direct`: it was sent to us alone, for discovery. */
         size_t (*received)(void *argument, unsigned char *datagram, size_t size, size_t capacity,
-                           const unsigned char *from, bool direct);
+                           const struct RabitCyclonePlace *from, bool direct);
     };
 
     /* Watches the domain that this thread has just created, until it is deleted. NULL if that fails. Pass the
@@ -74,12 +87,25 @@ extern "C"
     void *RabitCycloneWatch(struct RabitCycloneCalls calls);
     void RabitCycloneUnwatch(void *watch);
     struct ddsi_domaingv *RabitCycloneDomainOf(const void *watch);
+    /* Why datagrams may pass by the watch, as part of a sentence about the domain's configuration; NULL if
+       none can. */
+    const char *RabitCyclonePassesBy(const void *watch);
 
-    /* Sends a datagram of ours that way or, as `to` says, from the same socket to the group of samples;
-       neither `may` nor `sent` is called. Returns true if it was given to the socket. Valid until the domain
-       is deleted. */
-    bool RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
-                          const unsigned char *datagram, size_t size);
+    /* Sends a datagram of ours that way or, as `to` says, from the same socket to the group of samples. Calls
+       `seal`, but neither `may` nor `sent`. Returns the bytes that the socket got; 0: it got none. Valid
+       until the domain is deleted. */
+    size_t RabitCycloneSend(const void *watch, const struct RabitCycloneRoute *route, enum RabitCycloneTo to,
+                            const unsigned char *datagram, size_t size);
+    /* Sends a datagram as it is. Returns true if it was given to the socket. */
+    bool RabitCycloneSendSealed(const void *watch, const struct RabitCycloneRoute *route,
+                                const unsigned char *datagram, size_t size);
+    /* The way to a place: from the socket of the interface on whose network the place is, or of the first. */
+    struct RabitCycloneRoute RabitCycloneRouteTo(const void *watch, const struct RabitCyclonePlace *place);
+    /* Calls found(route, argument) with each IPv4 way that the domain announces its participants, with a lock
+       of the vendor's held. */
+    void RabitCycloneAnnouncedRoutes(const void *watch,
+                                     void (*found)(const struct RabitCycloneRoute *route, void *argument),
+                                     void *argument);
 
     /* Sends one zero byte to the own discovery address, so that a receiving thread calls `received`. */
     void RabitCycloneWake(const void *watch);

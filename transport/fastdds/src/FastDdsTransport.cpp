@@ -27,10 +27,7 @@ public:
     {
         return std::make_unique<FastDdsSession>(settings, context);
     }
-    void CheckConfig(const TransportSettings &settings) const override
-    {
-        FastDds::HasOwnTransports(settings.BackendConfig);
-    }
+    void CheckConfig(const TransportSettings &settings) const override { FastDds::CheckConfig(settings); }
     bool HasOwnNetworks(const TransportSettings &settings) const override
     {
         return FastDds::HasOwnTransports(settings.BackendConfig);

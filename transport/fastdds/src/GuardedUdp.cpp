@@ -21,6 +21,7 @@
 #include "common/RtpsTraffic.h"
 #include "common/RtpsWriter.h"
 #include "common/SendingSamples.h"
+#include "rtps/CardMessage.h"
 #include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::FastDds
@@ -44,8 +45,9 @@ constexpr std::chrono::milliseconds SocketTimeout{100};
 //
 // The vendor calls Send on any thread, and receive on a thread for each port, at once. `_sending` guards all
 // that chooses and counts what is sent. It is held while a datagram goes to the sockets, the meeting
-// (MeetingThread::Sending), OnSent and AnnounceAt. No other callback is called with it held: a key exchange,
-// for instance, may send on the thread that puts it.
+// (MeetingThread::Sending), OnSent and AnnounceAt, but not while a datagram is sealed, which takes 50 us.
+// Each writer of the vendor sends its datagrams one after the other, so they keep their order. No other
+// callback is called with it held: a key exchange, for instance, may send on the thread that puts it.
 class GuardedUdp final : public ChainedUdp
 {
 public:
@@ -71,6 +73,12 @@ public:
                     SendTo({route}, datagram);
                 });
         }
+        if (Envelope::SealedSession *const seal = Seal())
+        {
+            _guard.SetAuthority({.May = [seal](const auto &peer, bool write, auto topic)
+                                 { return write ? seal->MayWrite(peer, topic) : seal->MayRead(peer, topic); },
+                                 .NameOf = [seal](const auto &peer) { return seal->NameOf(peer); }});
+        }
         if (MeetingThread *const meeting = Meeting())
         {
             _guard.SetObserver(*meeting);
@@ -94,9 +102,24 @@ public:
                                    .Forget = [this](const auto &peer, auto number) { Forget(peer, number); },
                                    .Drop = [this](const auto &peer) { Keys()->Forget(peer); }});
         }
+        // The vendor has no socket yet.
+        if (Envelope::SealedSession *const seal = Seal())
+        {
+            const Envelope::RtpsHeader &vendor = _descriptor.Chosen().Header;
+            const auto card = WriteCardMessage({.From = SenderOf(vendor)});
+            Envelope::RtpsHeader own{};
+            std::copy_n(card.begin(), own.size(), own.begin());
+            seal->Start(vendor, own,
+                        {.Send = [this](const auto & /*to*/, auto sealed) { SendSealed(sealed); },
+                         .Log = _descriptor.Chosen().OnLine});
+        }
     }
     ~GuardedUdp() override
     {
+        if (Envelope::SealedSession *const seal = Seal())
+        {
+            seal->Stop();
+        }
         if (AuthenticationThread *const authentication = Authentication())
         {
             authentication->Stop();
@@ -137,7 +160,8 @@ public:
               rtps::LocatorsIterator &end, const std::chrono::steady_clock::time_point &timeout) override
     {
         rtps::SenderResource *const sender = &to;
-        ShortenedDatagram datagram(whole, _copy);
+        thread_local std::vector<std::uint8_t> copy;
+        ShortenedDatagram datagram(whole, copy);
         _guard.Sending(datagram.Bytes());
         OutgoingMessage message = ReadOutgoing(datagram.Bytes());
         message.HasSamples = message.HasSamples || SendingSamples::Now();
@@ -149,7 +173,7 @@ public:
         {
             _input.NoteOwn(datagram.Bytes());
         }
-        const std::lock_guard lock(_sending);
+        std::unique_lock lock(_sending);
         if (message.Announcement && _descriptor.Chosen().Mode == RtpsGuard::Mode::Full)
         {
             datagram.LeaveOutProperties();
@@ -177,7 +201,7 @@ public:
             {
                 _chosen.push_back(destination);
             }
-            if (message.Announcement && (IsGroup(destination) || _descriptor.Chosen().HasPeers))
+            if (message.Announcement && (IsGroup(destination) || HasOtherWaysToAll()))
             {
                 _output.NoteAnnounced({sender, destination}, now);
             }
@@ -198,9 +222,12 @@ public:
         {
             datagram.LeaveOutDestination();
         }
-        datagram.PutBackStatistics();
+        if (Seal() == nullptr)
+        {
+            datagram.PutBackStatistics();
+        }
         return Hold(sender, datagram.Bytes()) ||
-               _output.Send(sender, _chosen, datagram.Bytes(), message.HasSamples, timeout);
+               _output.Send(sender, _chosen, datagram.Bytes(), message.HasSamples, timeout, lock);
     }
 
     void receive(TransportReceiverInterface *next, const rtps::octet *buffer, std::uint32_t size,
@@ -211,7 +238,21 @@ public:
             return;
         }
         // This is the vendor's receive buffer, which is not reused before this returns.
-        const std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
+        std::span<std::uint8_t> datagram(const_cast<rtps::octet *>(buffer), size);
+        if (Seal() != nullptr)
+        {
+            const auto now = std::chrono::steady_clock::now();
+            datagram = Seal()->Open(datagram, PlaceOf(remote), now);
+            if (datagram.empty())
+            {
+                if (!_descriptor.Chosen().SampleGroup)
+                {
+                    const std::lock_guard lock(_sending);
+                    _output.HeardStranger(HostOf(remote), now);
+                }
+                return;
+            }
+        }
         const Receiver receiver{next, local, remote};
         if (Meeting() != nullptr || Authentication() != nullptr)
         {
@@ -257,6 +298,7 @@ public:
 private:
     using TimePoint = std::chrono::steady_clock::time_point;
 
+    Envelope::SealedSession *Seal() const { return _descriptor.Chosen().Seal.get(); }
     MeetingThread *Meeting() const { return _descriptor.Chosen().Meeting.get(); }
     AuthenticationThread *Authentication() const { return _descriptor.Chosen().Authentication.get(); }
     // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
@@ -272,6 +314,12 @@ private:
         _input.Forget(peer, theirs);
     }
     KeyThread *Keys() const { return _descriptor.Chosen().Keys.get(); }
+    // True if the group does not reach all: peers are listed, or, for what introduces a SealedSession, known.
+    bool HasOtherWaysToAll() const
+    {
+        const GuardedUdpDescriptor::Settings &chosen = _descriptor.Chosen();
+        return chosen.HasPeers || (chosen.Seal != nullptr && !chosen.SampleGroup);
+    }
     // Notes the address of a participant to which the vendor sends. Requires _sending.
     void NoteRoute(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
                    rtps::LocatorsIterator &begin, const rtps::LocatorsIterator &end)
@@ -298,13 +346,21 @@ private:
     void SendTo(const std::vector<Route> &routes, std::span<const std::uint8_t> datagram)
     {
         const auto timeout = std::chrono::steady_clock::now() + SocketTimeout;
-        const std::lock_guard lock(_sending);
+        std::unique_lock lock(_sending);
         for (const auto &[sender, destination] : routes)
         {
             _chosen.assign(1, destination);
-            _output.Send(sender, _chosen, datagram, false, timeout);
+            _output.Send(sender, _chosen, datagram, false, timeout, lock);
         }
     }
+    // Runs on the thread of the SealedSession.
+    void SendSealed(std::span<const std::uint8_t> sealed)
+    {
+        const auto now = std::chrono::steady_clock::now();
+        const std::lock_guard lock(_sending);
+        _output.SendSealed(sealed, now, now + SocketTimeout);
+    }
+
     // Runs on the meeting's thread. The vendor accepts datagrams on several threads.
     void DeliverCard(const HostAddress &from, std::span<std::uint8_t> datagram)
     {
@@ -325,14 +381,14 @@ private:
         HeldDatagrams::Scope *const held = HeldDatagrams::OfThisThread();
         const std::size_t datagrams = held != nullptr ? _output.DatagramsTo(sender, _chosen) : 0;
         return datagrams > 0 &&
-               held->Keep(datagrams * (HeldDatagrams::IpAndUdp + datagram.size()),
+               held->Keep(datagrams * (HeldDatagrams::IpAndUdp + datagram.size() + _output.MostAdded()),
                           [this, sender, destinations = _chosen,
                            bytes = std::vector<std::uint8_t>(datagram.begin(), datagram.end())]() mutable
                           {
                               const auto now = std::chrono::steady_clock::now();
-                              const std::lock_guard lock(_sending);
+                              std::unique_lock lock(_sending);
                               _output.ChooseGroupWhereAddressesLack(sender, false, now, destinations);
-                              _output.Send(sender, destinations, bytes, true, now + SocketTimeout);
+                              _output.Send(sender, destinations, bytes, true, now + SocketTimeout, lock);
                           });
     }
     // Takes a datagram of a key exchange, for each of its destinations. Returns false if it should be sent
@@ -396,7 +452,6 @@ private:
     RequestPace _requests;
     HeartbeatPace _heartbeats;
     SocketOutput::Destinations _chosen;  // of the datagram to send
-    std::vector<std::uint8_t> _copy;     // of ShortenedDatagram
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The vendor's UDP transport, with five differences:
+// The vendor's UDP transport, with six differences:
 // - Datagrams of up to 64 kB are received whatever size we send, so that nodes with different settings
 //   understand each other.
 // - The guard filters what the vendor's parser reads, and acknowledgements of a peer that had lost us are put
@@ -8,6 +8,8 @@
 // - Datagrams that the vendor repeats too quickly, or sends to each peer by itself, are rate-limited
 //   (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/KeyExchangeOutbox.h) or replaced by cards
 //   (rtps/Meeting.h).
+// - With a member of a fleet with keys, each datagram is sealed before it goes to a socket, and what does not
+//   open is dropped before anything else looks at it (envelope/SealedSession.h).
 // VendorInput.h hands datagrams to the vendor, SocketOutput.h gives them to the sockets.
 #pragma once
 
@@ -16,12 +18,15 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "Vendor.h"
 #include "common/KeyExchangeThread.h"
 #include "common/OwnNetworks.h"
 #include "common/SendingTurn.h"
+#include "envelope/SealedSession.h"
 #include "guard/AuthenticationThread.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/MeetingThread.h"
@@ -38,7 +43,8 @@ class GuardedUdpDescriptor final : public rtps::ChainingTransportDescriptor
 public:
     struct Settings
     {
-        std::uint32_t MaxDatagram = 0;  // bytes; larger ones are not sent
+        // Bytes, before they are sealed; larger ones are not sent.
+        std::uint32_t MaxDatagram = 0;
         Rtps::RtpsGuard::Mode Mode = Rtps::RtpsGuard::Mode::Full;
         // Multicast groups of peers are sent to at this port only; 0: never.
         std::uint32_t GroupPort = 0;
@@ -65,6 +71,14 @@ public:
         std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt{};
         // Schedules the exchange of keys. Null: without DDS Security.
         std::shared_ptr<KeyThread> Keys{};
+        // Null: datagrams go as they are.
+        std::shared_ptr<Envelope::SealedSession> Seal{};
+        // With Seal: the RTPS header with which the vendor's datagrams begin, but for the minor version.
+        Envelope::RtpsHeader Header{};
+        // With Seal: takes log lines, on any thread.
+        std::function<void(const std::string &)> OnLine{};
+        // With Seal: the ports at which the first participants of a host take discovery data.
+        std::vector<std::uint16_t> DiscoveryPorts{};
         // Null: endpoints are found by the vendor's discovery alone.
         std::shared_ptr<Rtps::MeetingThread> Meeting{};
         // Null unless Mode is Protected.

@@ -29,6 +29,9 @@ constexpr std::uint32_t SocketBuffer = 4u << 20;
 constexpr std::size_t LargestHandshake = 16384;
 // A peer without a port is looked for at the ports of this many participants of its host.
 constexpr std::uint32_t ParticipantsPerPeer = 16;
+// A host that is not listed is answered at the ports of this many participants. An answer is small, but goes
+// to each of them.
+constexpr std::uint32_t ParticipantsPerStranger = 4;
 // OMG DDSI-RTPS 2.3, 9.6.1.4.1: the discovery group, and by default the group of samples.
 constexpr const char *MulticastAddress = "239.255.0.1";
 
@@ -76,6 +79,37 @@ void AddSecurity(const TransportSecurity &security, rtps::PropertyPolicy &proper
     addFile("dds.sec.access.builtin.Access-Permissions.governance", security.Governance);
     addFile("dds.sec.access.builtin.Access-Permissions.permissions", security.Permissions);
     add("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
+}
+
+// With a member, GuardedUdp must see each datagram.
+void CheckMember(const TransportSettings &settings, const rtps::RTPSParticipantAttributes &attributes)
+{
+    if (settings.Member == nullptr)
+    {
+        return;
+    }
+    if (settings.SharedMemory)
+    {
+        throw TransportError("a node with keys shares no memory with others: leave shared_memory out",
+                             "shared_memory");
+    }
+    if (!attributes.userTransports.empty())
+    {
+        throw TransportError("the profiles file " + settings.BackendConfig +
+                                 " has transports, whose datagrams the keys cannot protect: leave them out",
+                             "backend_config");
+    }
+    const auto &properties = attributes.properties.properties();
+    const bool hasSecurity =
+        std::any_of(properties.begin(), properties.end(),
+                    [](const rtps::Property &property) { return property.name().starts_with("dds.sec."); });
+    if (hasSecurity)
+    {
+        throw TransportError(
+            "the profiles file " + settings.BackendConfig +
+                " configures DDS Security, which a node with keys does not use: leave it out",
+            "backend_config");
+    }
 }
 
 std::uint32_t DiscoveryGroupPort(const TransportSettings &settings,
@@ -134,6 +168,16 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     attributes.useBuiltinTransports = false;
     guarded.MaxDatagram = static_cast<std::uint32_t>(
         settings.Security ? std::max(settings.MaxDatagram, LargestHandshake) : settings.MaxDatagram);
+    if (guarded.Seal != nullptr)
+    {
+        guarded.MaxDatagram -= static_cast<std::uint32_t>(guarded.Seal->MostAdded());
+        guarded.OnLine = [log](const std::string &line) { log->Line(line); };
+        for (std::uint32_t id = 0; id < ParticipantsPerStranger; ++id)
+        {
+            guarded.DiscoveryPorts.push_back(static_cast<std::uint16_t>(
+                attributes.port.getUnicastPort(static_cast<std::uint32_t>(settings.Domain), id)));
+        }
+    }
     guarded.Mode = GuardMode(settings, attributes);
     guarded.SampleGroup =
         IsMulticastForData(settings) ? std::optional(SampleGroup(settings, attributes)) : std::nullopt;
@@ -217,6 +261,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     {
         attributes = ReadProfile(settings.BackendConfig);
     }
+    CheckMember(settings, attributes);
     attributes.setName(settings.Node.c_str());
     // Liveliness of single writers is not used: participants have leases, and nodes send beats.
     attributes.builtin.use_WriterLivelinessProtocol = false;
@@ -243,6 +288,12 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     AddMulticast(settings, attributes);
     AddPeers(settings, attributes);
     return attributes;
+}
+
+void CheckConfig(const TransportSettings &settings)
+{
+    CheckMember(settings, settings.BackendConfig.empty() ? rtps::RTPSParticipantAttributes()
+                                                         : ReadProfile(settings.BackendConfig));
 }
 
 bool HasOwnTransports(const std::string &profilesFile)

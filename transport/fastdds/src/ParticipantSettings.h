@@ -20,6 +20,10 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
                                                           const std::shared_ptr<SessionLog> &log,
                                                           GuardedUdpDescriptor::Settings udp);
 
+// Throws TransportError if the profiles file, if any, cannot be read or is refused by the vendor, and if with
+// a member of a fleet with keys some datagrams would not be sealed.
+void CheckConfig(const TransportSettings &settings);
+
 // True if the profiles file, if any, defines transports. Throws TransportError if the vendor refuses the
 // file.
 bool HasOwnTransports(const std::string &profilesFile);

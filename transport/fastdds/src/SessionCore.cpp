@@ -47,6 +47,15 @@ rtps::GuidPrefix_t MakeGuidPrefix()
     return prefix;
 }
 
+// The header of the datagrams of a participant of the vendor's, of RTPS 2.3 (OMG DDSI-RTPS 2.3, 8.3.3.1).
+Envelope::RtpsHeader HeaderOf(const rtps::GuidPrefix_t &prefix)
+{
+    Envelope::RtpsHeader header{
+        'R', 'T', 'P', 'S', 2, 3, rtps::c_VendorId_eProsima[0], rtps::c_VendorId_eProsima[1]};
+    std::copy(std::begin(prefix.value), std::end(prefix.value), header.begin() + Rtps::PrefixAt);
+    return header;
+}
+
 PeerPlace PlaceOf(const ParticipantNews &peer)
 {
     PeerPlace place;
@@ -114,20 +123,24 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                                   .Memory = _multicast ? settings.Memory : settings.Lease,
                                   .IsMulticast = _multicast},
           context.Turns)),
-      _keys(settings.Security ? std::make_shared<KeyThread>(context.Turns, settings.MaxDatagram) : nullptr)
+      _keys(settings.Security ? std::make_shared<KeyThread>(context.Turns, settings.MaxDatagram) : nullptr),
+      _seal(settings.Member ? std::make_shared<Envelope::SealedSession>(settings.Member) : nullptr)
 {
+    const rtps::GuidPrefix_t prefix = MakeGuidPrefix();
     auto attributes = MakeParticipantAttributes(settings, Log(),
                                                 {.OnDeaf = [this](auto port) { _deafAt = port; },
                                                  .Sending = context.Sending,
                                                  .Announce = [this] { Announce(); },
                                                  .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
                                                  .Keys = _keys,
+                                                 .Seal = _seal,
+                                                 .Header = HeaderOf(prefix),
                                                  .Meeting = _meeting,
                                                  .Authentication = _authentication,
                                                  .Goodbyes = _goodbyes,
                                                  .Accounts = _accounts});
     attributes.participantID = static_cast<std::int32_t>(_number.Get());
-    attributes.prefix = MakeGuidPrefix();
+    attributes.prefix = prefix;
     SetLibraryDefaults();
     ReadInterfaces();
     // Before the vendor has the participant: it would go on calling a session whose start has failed.
@@ -140,6 +153,11 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
         throw TransportError("Fast DDS cannot join domain " + std::to_string(settings.Domain) +
                              ": no free port, or no usable network interface" +
                              (settings.Security ? ", or it does not accept the keys" : ""));
+    }
+    if (_seal != nullptr && !_seal->IsStarted())
+    {
+        Leave();
+        throw TransportError("Fast DDS cannot seal datagrams with the keys of " + settings.Node, "security");
     }
     _participant.load()->enable();
     if (const std::uint32_t port = _deafAt; port != 0)
@@ -170,6 +188,10 @@ void SessionCore::Leave()
     if (_keys != nullptr)
     {
         _keys->Stop();
+    }
+    if (_seal != nullptr)
+    {
+        _seal->Stop();
     }
     _announceTimer.Stop();
     RemoveOwnSamples(*_participant);

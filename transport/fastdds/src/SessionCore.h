@@ -16,6 +16,7 @@
 #include "Vendor.h"
 #include "common/ProcessNumber.h"
 #include "common/VendorCore.h"
+#include "envelope/SealedSession.h"
 #include "rtps/MeetingThread.h"
 
 namespace Rabit::FastDds
@@ -72,7 +73,8 @@ private:
     const std::shared_ptr<Rtps::MeetingThread> _meeting;
     const std::shared_ptr<Rtps::AuthenticationThread> _authentication =
         std::make_shared<Rtps::AuthenticationThread>(AwaitsProtectedAnnouncements);
-    const std::shared_ptr<KeyThread> _keys;  // null without security
+    const std::shared_ptr<KeyThread> _keys;                // null without security
+    const std::shared_ptr<Envelope::SealedSession> _seal;  // null without a member
     // The vendor would give each participant of a process the next number, and with it the next ports, even
     // if earlier participants are gone. A session that joins the network anew would leave the ports at which
     // peers look for it, and run out of ports in the end. The search for ports starts with this number; the

@@ -6,6 +6,7 @@
 #include "common/RtpsWriter.h"
 #include "envelope/MergedDatagram.h"
 #include "guard/RtpsMessage.h"
+#include "rtps/CardMessage.h"
 
 namespace Rabit::FastDds
 {
@@ -20,7 +21,7 @@ constexpr std::chrono::milliseconds KeptTimeout{100};
 
 }  // namespace
 
-std::uint32_t SocketOutput::NumberOf(const rtps::SenderResource *socket)
+std::uint32_t SocketOutput::NumberOf(rtps::SenderResource *socket)
 {
     return _sockets.emplace(socket, static_cast<std::uint32_t>(_sockets.size())).first->second;
 }
@@ -71,8 +72,8 @@ std::vector<Route> SocketOutput::RoutesTo(const std::optional<GuidPrefix> &peer,
     return _cardRoutes.To(peer, now);
 }
 
-void SocketOutput::ChooseGroupWhereAddressesLack(const rtps::SenderResource *socket, bool toOne,
-                                                 TimePoint now, Destinations &destinations)
+void SocketOutput::ChooseGroupWhereAddressesLack(rtps::SenderResource *socket, bool toOne, TimePoint now,
+                                                 Destinations &destinations)
 {
     const auto isAwaited = [this, now](const rtps::Locator_t &destination)
     { return !IsGroup(destination) && _addresses.IsAwaited(HostOf(destination), now); };
@@ -99,7 +100,7 @@ void SocketOutput::ChooseGroupWhereAddressesLack(const rtps::SenderResource *soc
     }
 }
 
-std::size_t SocketOutput::DatagramsTo(const rtps::SenderResource *socket, const Destinations &destinations)
+std::size_t SocketOutput::DatagramsTo(rtps::SenderResource *socket, const Destinations &destinations)
 {
     const std::uint32_t number = NumberOf(socket);
     return static_cast<std::size_t>(std::count_if(destinations.begin(), destinations.end(),
@@ -109,13 +110,13 @@ std::size_t SocketOutput::DatagramsTo(const rtps::SenderResource *socket, const 
 
 bool SocketOutput::MayGo(const rtps::Locator_t &destination, std::size_t bytes, bool samples, TimePoint now)
 {
-    const Place place{.Host = HostOf(destination), .Port = static_cast<std::uint16_t>(destination.port)};
-    const auto cargo = samples ? Rtps::Ledger::Cargo::Samples : Rtps::Ledger::Cargo::Discovery;
-    return IsGroup(destination) || _guard.MayGo(place, bytes, cargo, _addresses, now);
+    const auto cargo = samples ? Ledger::Cargo::Samples : Ledger::Cargo::Discovery;
+    return IsGroup(destination) || _guard.MayGo(PlaceOf(destination), bytes, cargo, _addresses, now);
 }
 
 bool SocketOutput::Send(rtps::SenderResource *socket, const Destinations &destinations,
-                        std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout)
+                        std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout,
+                        Lock &lock)
 {
     const std::uint32_t number = NumberOf(socket);
     const auto now = std::chrono::steady_clock::now();
@@ -135,18 +136,116 @@ bool SocketOutput::Send(rtps::SenderResource *socket, const Destinations &destin
         }
         return true;
     }
-    _settings.OnSent(samples, _allowed.size(), _allowed.size() * datagram.size());
+    if (_settings.Seal == nullptr)
+    {
+        _settings.OnSent(samples, _allowed.size(), _allowed.size() * datagram.size());
+        rtps::Locators first(_allowed.cbegin());
+        rtps::Locators last(_allowed.cend());
+        return ChainedUdp::SendOn(*socket, datagram, first, last, timeout);
+    }
+    thread_local std::vector<std::uint8_t> sealed;
+    bool isSent = true;
+    for (const rtps::Locator_t &destination : Destinations(_allowed))
+    {
+        lock.unlock();
+        const bool isSealed = SealFor(destination, datagram, sealed);
+        lock.lock();
+        if (isSealed)
+        {
+            _settings.OnSent(samples, 1, sealed.size());
+            isSent = SendOne({socket, destination}, sealed, timeout) && isSent;
+        }
+    }
+    return isSent;
+}
+
+bool SocketOutput::SealFor(const rtps::Locator_t &destination, std::span<const std::uint8_t> datagram,
+                           std::vector<std::uint8_t> &sealed) const
+{
+    const auto place = IsGroup(destination) ? std::nullopt : std::optional(PlaceOf(destination));
+    const bool isCard = IsCardMessage(datagram);
+    const auto contents = isCard ? Envelope::OuterClass::Meeting : Envelope::OuterClass::Traffic;
+    // The build of the vendor decides on the minor version, 2 or 3, and does not tell before it sends.
+    constexpr std::size_t minorVersionAt = 5;
+    thread_local std::vector<std::uint8_t> copy;
+    if (!isCard && datagram.size() > minorVersionAt &&
+        datagram[minorVersionAt] != _settings.Header[minorVersionAt])
+    {
+        copy.assign(datagram.begin(), datagram.end());
+        copy[minorVersionAt] = _settings.Header[minorVersionAt];
+        datagram = copy;
+    }
+    return _settings.Seal->Seal(datagram, place, contents, sealed);
+}
+
+void SocketOutput::HeardStranger(const HostAddress &host, TimePoint now)
+{
+    if (_strangers.size() >= MostStrangers && !_strangers.contains(host))
+    {
+        _strangers.erase(std::min_element(_strangers.begin(), _strangers.end(),
+                                          [](const auto &a, const auto &b) { return a.second < b.second; }));
+    }
+    _strangers.insert_or_assign(host, now);
+}
+
+void SocketOutput::SendSealed(std::span<const std::uint8_t> sealed, TimePoint now, const TimePoint &timeout)
+{
+    for (const Route &route : RoutesTo(std::nullopt, now))
+    {
+        _settings.OnSent(false, 1, sealed.size());
+        SendOne(route, sealed, timeout);
+    }
+    std::erase_if(_strangers, [now](const auto &entry) { return now - entry.second > StrangersAnswered; });
+    for (const auto &[host, heard] : _strangers)
+    {
+        for (const std::uint16_t port : _settings.DiscoveryPorts)
+        {
+            const Place place{.Host = host, .Port = port};
+            if (_guard.MayGo(place, sealed.size(), Ledger::Cargo::Discovery, _addresses, now))
+            {
+                SendSealedTo(place, sealed, timeout);
+            }
+        }
+    }
+}
+
+void SocketOutput::SendSealedTo(const Place &to, std::span<const std::uint8_t> sealed,
+                                const TimePoint &timeout)
+{
+    if (_sockets.empty())
+    {
+        _settings.OnSent(false, 1, sealed.size());
+        _reply.Send(to, sealed);
+        return;
+    }
+    const rtps::Locator_t destination = LocatorOf(to);
+    NumberOf(destination);
+    for (const auto &[socket, number] : _sockets)
+    {
+        if (Leaves(number, destination))
+        {
+            _settings.OnSent(false, 1, sealed.size());
+            SendOne({socket, destination}, sealed, timeout);
+        }
+    }
+}
+
+bool SocketOutput::SendOne(const Route &route, std::span<const std::uint8_t> datagram,
+                           const TimePoint &timeout)
+{
+    _allowed.assign(1, route.second);
     rtps::Locators first(_allowed.cbegin());
     rtps::Locators last(_allowed.cend());
-    return ChainedUdp::SendOn(*socket, datagram, first, last, timeout);
+    return ChainedUdp::SendOn(*route.first, datagram, first, last, timeout);
 }
 
 void SocketOutput::Keep(const Route &route, std::span<const std::uint8_t> datagram)
 {
     const auto make = [this, &route](std::size_t most)
     {
-        return std::make_unique<MergedDatagram>(
-            most, [this, route](std::vector<std::uint8_t> &message) { SendKept(route, message); });
+        return std::make_unique<MergedDatagram>(most - std::min(most, MostAdded()),
+                                                [this, route](std::vector<std::uint8_t> &message)
+                                                { SendKept(route, message); });
     };
     const auto grown = _settings.Sending->Take({NumberOf(route), 0}, datagram, make);
     _settings.OnSent(true, grown.Datagrams, grown.Bytes);
@@ -154,16 +253,25 @@ void SocketOutput::Keep(const Route &route, std::span<const std::uint8_t> datagr
 
 void SocketOutput::SendKept(const Route &route, std::vector<std::uint8_t> &message)
 {
+    const auto timeout = std::chrono::steady_clock::now() + KeptTimeout;
+    if (_settings.Seal != nullptr)
+    {
+        thread_local std::vector<std::uint8_t> sealed;
+        if (SealFor(route.second, message, sealed))
+        {
+            const Lock lock(_sending);
+            _settings.OnSent(true, 0, sealed.size() - message.size());
+            SendOne(route, sealed, timeout);
+        }
+        return;
+    }
     // The last parts of a merged message may end like statistics together.
     while (EndsLikeStatistics(message) && SizeWithoutStatistics(message) == message.size())
     {
         AppendSubmessageHeader(message, SubmessageKind::Pad, 0);
     }
-    const std::lock_guard lock(_sending);
-    _allowed.assign(1, route.second);
-    rtps::Locators first(_allowed.cbegin());
-    rtps::Locators last(_allowed.cend());
-    ChainedUdp::SendOn(*route.first, message, first, last, std::chrono::steady_clock::now() + KeptTimeout);
+    const Lock lock(_sending);
+    SendOne(route, message, timeout);
 }
 
 }  // namespace Rabit::FastDds

@@ -116,6 +116,7 @@ using RecursiveTimedMutex = eprosima::fastrtps::RecursiveTimedMutex;
 #include <utility>
 #include <vector>
 
+#include "common/Ledger.h"
 #include "common/Rtps.h"
 
 namespace Rabit::FastDds
@@ -206,6 +207,19 @@ inline Rtps::HostAddress HostOf(const rtps::Locator_t &locator)
         std::copy_n(rtps::IPLocator::getIPv4(locator), host.size(), host.begin());
     }
     return host;
+}
+
+inline Rtps::Place PlaceOf(const rtps::Locator_t &locator)
+{
+    return {.Host = HostOf(locator), .Port = static_cast<std::uint16_t>(locator.port)};
+}
+
+inline rtps::Locator_t LocatorOf(const Rtps::Place &place)
+{
+    rtps::Locator_t locator;
+    rtps::IPLocator::setIPv4(locator, place.Host.data());
+    locator.port = place.Port;
+    return locator;
 }
 
 inline bool IsGroup(const rtps::Locator_t &locator)

@@ -16,21 +16,26 @@ Rtps::CardExchange::TimePoint NetworkCore::CardTime() const
     return Rtps::CardExchange::TimePoint(std::chrono::hours(1)) + _now;
 }
 
-void NetworkCore::AwaitCards(ParticipantState &me)
+void NetworkCore::Await(DueTimer &timer, Event::Kind kind, ParticipantId at,
+                        std::optional<Rtps::CardExchange::TimePoint> due)
 {
     constexpr Time shortest = std::chrono::microseconds(100);
-    const auto due = me.Cards.Due();
-    const Time at = due ? _now + std::max<Time>(*due - CardTime(), shortest) : Time::max();
-    if (due && (!me.CardsAt || at < *me.CardsAt))
+    const Time time = due ? _now + std::max<Time>(*due - CardTime(), shortest) : Time::max();
+    if (due && (!timer.At || time < *timer.At))
     {
-        me.CardsAt = at;
-        Later(at - _now, {Event::Kind::CardTimer, me.Id, 0, ++me.CardTimer, {}});
+        timer.At = time;
+        Later(time - _now, {kind, at, 0, ++timer.Number, {}});
     }
+}
+
+void NetworkCore::AwaitCards(ParticipantState &me)
+{
+    Await(me.CardTimer, Event::Kind::CardTimer, me.Id, me.Cards.Due());
 }
 
 void NetworkCore::ServeCards(const ParticipantPtr &me)
 {
-    me->CardsAt.reset();
+    me->CardTimer.At.reset();
     if (me->Turns.IsScheduled())
     {
         _calls.emplace_back([me] { me->Turns.Due(); });
@@ -54,23 +59,7 @@ bool NetworkCore::SendCard(const ParticipantPtr &me)
     datagram.Card = std::make_shared<const std::vector<std::uint8_t>>(std::move(outgoing->Bytes));
     datagram.Endpoints = me->Endpoints;
     datagram.Sender = me;
-    Letters letters;
-    for (const auto &[id, other] : _participants)
-    {
-        const bool isFor = outgoing->To ? id == ParticipantOf(*outgoing->To) : other != me;
-        if (isFor && other->Settings.Domain == me->Settings.Domain)
-        {
-            letters.push_back({id, datagram, _timings.DiscoveryDelay});
-        }
-    }
-    if (outgoing->To)
-    {
-        SendTogether(*me, std::move(letters), false);
-    }
-    else
-    {
-        SendToGroup(*me, std::move(letters), datagram);
-    }
+    SendDiscovery(*me, outgoing->To ? ParticipantOf(*outgoing->To) : Nobody, datagram);
     return true;
 }
 
@@ -109,7 +98,14 @@ void NetworkCore::HearCard(const ParticipantPtr &me, ParticipantId from, const D
     }
     if (me->Cards.Received(*message, CardTime()))
     {
-        TakeEndpoints(me, MeetPeer(me, from, *datagram.Sender), datagram.Endpoints);
+        if (MayMeet(*me, from, *datagram.Sender))
+        {
+            TakeEndpoints(me, MeetPeer(me, from, *datagram.Sender), AllowedOf(*me, from, datagram.Endpoints));
+        }
+        else
+        {
+            me->Cards.Refuse(message->From, CardTime());
+        }
     }
     AwaitCards(*me);
 }

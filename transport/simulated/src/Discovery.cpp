@@ -17,18 +17,25 @@ constexpr Time FirstGap = std::chrono::milliseconds(100);
 
 }  // namespace
 
-// To all participants in the domain, known or not; repeated periodically.
-void NetworkCore::Announce(const ParticipantPtr &participant)
+void NetworkCore::SendDiscovery(const ParticipantState &from, ParticipantId to, const Datagram &content)
 {
     Letters letters;
     for (const auto &[id, other] : _participants)
     {
-        if (other != participant && other->Settings.Domain == participant->Settings.Domain)
+        const bool isFor = to != Nobody ? id == to : id != from.Id;
+        if (isFor && other->Settings.Domain == from.Settings.Domain)
         {
-            letters.push_back({id, {}, _timings.DiscoveryDelay});
+            letters.push_back({id, content, _timings.DiscoveryDelay});
         }
     }
-    SendToGroup(*participant, std::move(letters), {});
+    to != Nobody ? SendTogether(from, std::move(letters), false)
+                 : SendToGroup(from, std::move(letters), content);
+}
+
+// To all participants in the domain, known or not; repeated periodically.
+void NetworkCore::Announce(const ParticipantPtr &participant)
+{
+    SendDiscovery(*participant, Nobody, {});
     const Time period = participant->Settings.AnnouncementPeriod;
     const int before = participant->Announced++;
     Later(before < InitialRounds ? std::min(FirstGap * (1 << before), period) : period,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "SealStage.h"
+
 namespace Rabit::Simulated
 {
 
@@ -106,6 +108,12 @@ ParticipantPtr NetworkCore::Join(const TransportSettings &settings, PeerHandler 
         _media.AddNode(settings.Node);
         _sent.emplace_back();
     }
+    if (settings.Member != nullptr)
+    {
+        participant->Seal =
+            std::make_shared<SealStage>(settings.Member, participant->Id, _random.Next(), CardTime());
+        AwaitSeal(*participant);
+    }
     _participants.emplace(participant->Id, participant);
     participant->Cards.SetSelf(PrefixOf(participant->Id));
     Announce(participant);
@@ -170,9 +178,15 @@ void NetworkCore::Handle(Event event)
             Announce(at);
             break;
         case Event::Kind::CardTimer:
-            if (event.Birth == at->CardTimer)
+            if (event.Birth == at->CardTimer.Number)
             {
                 ServeCards(at);
+            }
+            break;
+        case Event::Kind::SealTimer:
+            if (event.Birth == at->SealTimer.Number)
+            {
+                ServeSeal(at);
             }
             break;
         case Event::Kind::LeaseTimer:
@@ -192,6 +206,10 @@ void NetworkCore::Handle(Event event)
 
 void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Datagram &datagram)
 {
+    if (!Opens(*at, from, datagram) || datagram.What == Datagram::Kind::Introduction)
+    {
+        return;
+    }
     const auto known = at->Peers.find(from);
     if (known != at->Peers.end())
     {
@@ -214,6 +232,8 @@ void NetworkCore::Arrive(const ParticipantPtr &at, ParticipantId from, const Dat
             return;
         case Datagram::Kind::Card:
             HearCard(at, from, datagram);
+            return;
+        case Datagram::Kind::Introduction:
             return;
         case Datagram::Kind::Data:
             if (reader != at->Readers.end())

@@ -4,6 +4,7 @@
 #include <rabit/transport/Transport.h>
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -71,6 +72,8 @@ public:
     TurnDestinations TakeTurnDestinations(ParticipantState &participant);
     void EndTurn(ParticipantState &participant);
     int MatchedReaders(const WriterState &writer) const;
+    // The most bytes that a seal adds to a packet; 0 without a member.
+    static std::size_t MostOfSeal(const ParticipantState &participant);
     // DiscoveryTurns::Exchange of that participant.
     std::size_t NextCardBytes(ParticipantState &participant);
     void SendNextCard(const ParticipantPtr &participant);
@@ -95,6 +98,7 @@ private:
             Arrival,
             AnnouncementTimer,
             CardTimer,
+            SealTimer,
             LeaseTimer,
             HeartbeatTimer,
             Passage  // the packet on the air of medium number At has passed
@@ -136,6 +140,8 @@ private:
     void Land(Flight &flight);
 
     // Discovery.cpp
+    // Sends to all participants of the domain, or to one.
+    void SendDiscovery(const ParticipantState &from, ParticipantId to, const Datagram &content);
     void Announce(const ParticipantPtr &participant);
     void HearAnnouncement(const ParticipantPtr &me, ParticipantId from);
     Peer &MeetPeer(const ParticipantPtr &me, ParticipantId from, const ParticipantState &sender);
@@ -151,12 +157,32 @@ private:
 
     // Cards.cpp
     Rtps::CardExchange::TimePoint CardTime() const;
+    // Sets the timer for what is due then, unless it is set for an earlier time.
+    void Await(DueTimer &timer, Event::Kind kind, ParticipantId at,
+               std::optional<Rtps::CardExchange::TimePoint> due);
     void AwaitCards(ParticipantState &me);
     void ServeCards(const ParticipantPtr &me);
     // Sends one message of the exchange of cards. Returns false if none is due.
     bool SendCard(const ParticipantPtr &me);
     void HearCard(const ParticipantPtr &me, ParticipantId from, const Datagram &datagram);
     void HearUnknown(ParticipantState &me, ParticipantId from, const Datagram &datagram);
+
+    // Sealing.cpp
+    // Seals each letter by itself, although they go in one packet. Returns the bytes that a seal adds to the
+    // packet; 0 without a member.
+    std::uint64_t SealLetters(const ParticipantState &from, Letters::iterator first, Letters::iterator last,
+                              bool multicast) const;
+    // The bytes that a seal adds to a packet of which no receiver learns.
+    static std::uint64_t SealOfPart(const ParticipantState &from);
+    // True if the datagram may be read: the seal opens, or neither side has a member.
+    bool Opens(ParticipantState &at, ParticipantId from, const Datagram &datagram);
+    void AwaitSeal(ParticipantState &me);
+    void ServeSeal(const ParticipantPtr &me);
+    // True if the sender's certificate has the sender's name.
+    static bool MayMeet(const ParticipantState &me, ParticipantId from, const ParticipantState &sender);
+    // Those endpoints that the sender's certificate allows.
+    static std::shared_ptr<const EndpointList> AllowedOf(const ParticipantState &me, ParticipantId from,
+                                                         const std::shared_ptr<const EndpointList> &all);
 
     // Matching.cpp
     void EndpointAppeared(const ParticipantPtr &me, const Peer &peer, const EndpointInfo &remote);

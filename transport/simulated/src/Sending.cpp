@@ -44,6 +44,7 @@ void NetworkCore::SendTogether(const ParticipantState &from, Letters letters, bo
                 letter == first || ofThis.Packets * ofThis.Bytes > cost.Packets * cost.Bytes ? ofThis : cost;
         }
         cost.Packets -= std::min(cost.Packets, partsBefore);
+        cost.Bytes += SealLetters(from, first, last, multicast);
         Count(from, cost);
         if (medium != nullptr && medium->IsInTheWay())
         {

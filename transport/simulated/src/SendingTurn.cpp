@@ -72,7 +72,7 @@ void NetworkCore::KeepPacket(ParticipantState &from, ParticipantId to, Letters l
     const std::uint64_t joined = cost.Bytes - Headers;
     const auto last = std::find_if(turn.Packets.rbegin(), turn.Packets.rend(),
                                    [to](const KeptPacket &packet) { return packet.To == to; });
-    if (last == turn.Packets.rend() || last->Bytes + joined > turn.Most)
+    if (last == turn.Packets.rend() || last->Bytes + joined + MostOfSeal(from) > turn.Most)
     {
         turn.Packets.push_back({to, std::move(letters), cost.Bytes});
         Count(from, cost);
@@ -92,6 +92,10 @@ void NetworkCore::SendKept(ParticipantState &from)
         Letters &letters = packet.Letters;
         std::stable_sort(letters.begin(), letters.end(),
                          [](const Letter &a, const Letter &b) { return a.To < b.To; });
+        const std::uint64_t added = SealLetters(from, letters.begin(), letters.end(), packet.To == Nobody);
+        from.Log->SentSamples(0, added);
+        _sent[from.NodeNumber].Bytes += added;
+        packet.Bytes += added;
         if (medium != nullptr && medium->IsInTheWay())
         {
             const auto flight = std::make_shared<Flight>();

@@ -65,7 +65,8 @@ private:
         {
             return Fail("the encoded sample has no readable key");
         }
-        const std::size_t datagram = _core->Participant->Settings.MaxDatagram;
+        const std::size_t datagram =
+            _core->Participant->Settings.MaxDatagram - NetworkCore::MostOfSeal(*_core->Participant);
         sample->SourceTime = sourceTime;
         sample->Alive = !dispose;
         sample->Datagrams = static_cast<std::uint32_t>((size + datagram - 1) / datagram);

@@ -11,7 +11,7 @@ namespace Rabit::Simulated
 namespace
 {
 
-constexpr std::uint64_t Envelope = 20 + 8;  // IPv4, UDP
+constexpr std::uint64_t IpAndUdp = 20 + 8;
 constexpr std::uint64_t Header = 20;
 constexpr std::uint64_t Timestamp = 12;    // INFO_TS
 constexpr std::uint64_t Destination = 16;  // INFO_DST
@@ -36,7 +36,7 @@ std::uint64_t NetworkCore::CountDestinations(const ParticipantState &me, const W
 
 NetworkCore::Cost NetworkCore::CostOfPart(const Sample &sample)
 {
-    return {1, Envelope + Header + Timestamp + Data +
+    return {1, IpAndUdp + Header + Timestamp + Data +
                    (sample.Bytes.size() + sample.Datagrams - 1) / sample.Datagrams};
 }
 
@@ -45,7 +45,7 @@ NetworkCore::Cost NetworkCore::CostOf(const ParticipantState &me, const Datagram
     const auto discovery = [&](std::uint64_t bytes)
     {
         const std::uint64_t packets = (bytes + me.Settings.MaxDatagram - 1) / me.Settings.MaxDatagram;
-        return Cost{static_cast<std::uint32_t>(packets), Envelope + Header + bytes / packets, true};
+        return Cost{static_cast<std::uint32_t>(packets), IpAndUdp + Header + bytes / packets, true};
     };
     switch (datagram.What)
     {
@@ -58,21 +58,23 @@ NetworkCore::Cost NetworkCore::CostOf(const ParticipantState &me, const Datagram
             return cost;
         }
         case Datagram::Kind::Heartbeat:
-            return {1, Envelope + Header + Destination + Heartbeat};
+            return {1, IpAndUdp + Header + Destination + Heartbeat};
         case Datagram::Kind::Acknowledgement:
-            return {1, Envelope + Header + Destination + Acknowledgement};
+            return {1, IpAndUdp + Header + Destination + Acknowledgement};
         case Datagram::Kind::Announce:
         case Datagram::Kind::Bye:
             return discovery(Timestamp + Data + Participant);
         case Datagram::Kind::Card:
             return discovery(datagram.Card->size() - Header);
+        case Datagram::Kind::Introduction:
+            return {1, IpAndUdp + datagram.Sealed->size(), true};
     }
     return {};
 }
 
 void NetworkCore::Count(const ParticipantState &me, const Cost &cost)
 {
-    const std::uint64_t bytes = cost.Packets * (cost.Bytes - Envelope);
+    const std::uint64_t bytes = cost.Packets * (cost.Bytes - IpAndUdp);
     cost.IsDiscovery ? me.Log->SentDiscovery(cost.Packets, bytes) : me.Log->SentSamples(cost.Packets, bytes);
     SimulatedSent &sent = _sent[me.NodeNumber];
     sent.Datagrams += cost.Packets;

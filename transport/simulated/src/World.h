@@ -73,6 +73,7 @@ struct Datagram
         Announce,        // the sender is alive
         Bye,             // goodbye
         Card,            // a card message; Endpoints: content of the sender's card
+        Introduction,    // of the seal itself: nothing but Sealed
         Data,            // Content; no sample below First will come any more
         Heartbeat,       // samples First to Last are available
         Acknowledgement  // all below First have arrived, Sequences are missing
@@ -87,6 +88,8 @@ struct Datagram
     std::shared_ptr<const EndpointList> Endpoints;
     std::vector<std::uint64_t> Sequences;
     std::shared_ptr<const ParticipantState> Sender;  // of a card message
+    // The seal's bytes for a message that stands for this datagram (SealStage.h); null: it is not sealed.
+    std::shared_ptr<const std::vector<std::uint8_t>> Sealed;
 };
 
 // A datagram for one reader, or for one participant, which may share a multicast packet with others.
@@ -184,6 +187,15 @@ struct Peer
     std::shared_ptr<const EndpointList> TheirEndpoints = std::make_shared<EndpointList>();
 };
 
+// When the timer of one kind is due that is valid.
+struct DueTimer
+{
+    std::optional<std::chrono::nanoseconds> At;
+    std::uint64_t Number = 0;
+};
+
+class SealStage;
+
 struct ParticipantState
 {
     ParticipantState(const TransportSettings &settings, PeerHandler onPeer)
@@ -214,8 +226,9 @@ struct ParticipantState
 
     Simulated::Turn Turn;
     Rtps::CardExchange Cards;
-    std::optional<std::chrono::nanoseconds> CardsAt;  // when the card timer is due
-    std::uint64_t CardTimer = 0;                      // number of the timer that is valid
+    DueTimer CardTimer;
+    std::shared_ptr<SealStage> Seal;  // null: the session has no member
+    DueTimer SealTimer;
 
     // Not guarded by the network's mutex.
     DiscoveryTurns Turns;

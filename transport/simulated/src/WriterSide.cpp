@@ -132,7 +132,8 @@ bool NetworkCore::WritePart(const ParticipantState &participant, const WriterSta
     Medium *const medium = _media.Of(participant.NodeNumber);
     for (std::uint64_t i = CountDestinations(participant, writer); i > 0; --i)
     {
-        const Cost cost = CostOfPart(sample);
+        Cost cost = CostOfPart(sample);
+        cost.Bytes += SealOfPart(participant);
         Count(participant, cost);
         if (medium != nullptr && medium->IsInTheWay())
         {
@@ -149,7 +150,7 @@ std::size_t NetworkCore::BytesOfPart(const ParticipantState &participant, const 
                                      const Sample &sample) const
 {
     const std::lock_guard lock(_mutex);
-    return CountDestinations(participant, writer) * CostOfPart(sample).Bytes;
+    return CountDestinations(participant, writer) * (CostOfPart(sample).Bytes + MostOfSeal(participant));
 }
 
 int NetworkCore::MatchedReaders(const WriterState &writer) const

@@ -58,6 +58,8 @@
 namespace Rabit
 {
 
+class FleetMember;
+
 // Settings that a backend cannot honour: an unparsable peer, a bad configuration file, an exhausted domain.
 class TransportError : public std::runtime_error
 {
@@ -138,6 +140,11 @@ struct TransportSettings
     // If set, only participants with a certificate of the same authority are heard and answered, within their
     // permissions. A backend without security throws TransportError.
     std::optional<TransportSecurity> Security{};
+    // This node's membership of a fleet with keys (FleetMember.h), instead of Security; null: none. Only
+    // members of the same fleet are heard and answered, within their permissions. One object serves all
+    // sessions of the node. A backend that cannot seal each datagram with these settings throws
+    // TransportError.
+    std::shared_ptr<FleetMember> Member{};
     // Takes the session's log lines (handlers that threw, writes that failed, types that differ ...), without
     // a newline. Called on any thread; must be quick and thread-safe. If not set, only the counters tell.
     std::function<void(const std::string &)> Log;
@@ -283,7 +290,7 @@ public:
         return Write(sample, sourceTime);
     }
     // Bytes of the next held datagram on the air, as TransportCounters count them, to all its destinations;
-    // 0: none is held.
+    // with a Member, the most that they can be. 0: none is held.
     virtual std::size_t HeldBytes() const { return 0; }
     // Sends the next held datagram.
     virtual void SendHeld() {}
@@ -412,13 +419,16 @@ public:
     // The parts of the network that the settings ask for and that are missing now: interfaces that do not
     // exist or have no carrier or address, peers' names without an address. Also the reason why the network
     // could not be joined. Besides, the hosts whose unknown programs this session has refused something for
-    // ten seconds (setting `stranger`, the address as the entry). None is Impossible, and none is logged: the
-    // holder of the session reports them. Empty if all is well. Any thread.
+    // ten seconds (setting `stranger`, the address as the entry), and what members announce although their
+    // certificates do not allow it (setting `security`, the node as the entry). FleetMember::Problems are not
+    // among them. None is Impossible, and none is logged: the holder of the session reports them. Empty if
+    // all is well. Any thread.
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
     // Begins a turn of the calling thread: the datagrams of samples that it writes until EndTurn are sent by
     // EndTurn. Those to the same address and port go as one datagram of at most `mostBytes` bytes, the
     // headers of IP and UDP included, in the order in which they were written. A datagram that does not fit
     // goes by itself. Counters count a kept datagram at once, with the bytes that it adds to what is sent.
+    // With a Member, the bytes of the seal are counted when the datagram goes.
     // Returns false, and begins nothing, if this session sends each datagram by itself, as with Security.
     //
     // A turn is short: between the calls the thread writes some samples. Only one thread uses turns, and has

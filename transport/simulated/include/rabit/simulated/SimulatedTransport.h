@@ -13,7 +13,10 @@ namespace Rabit
 // SimulatedNetwork::AdvanceTo, on the thread that calls it.
 //
 // It uses these settings: Node, Incarnation, Domain, MaxDatagram, Multicast, Peers, Lease, Memory,
-// AnnouncementPeriod and Log. Samples are limited to 64 MiB, as with Fast DDS.
+// AnnouncementPeriod, Member and Log. Samples are limited to 64 MiB, as with Fast DDS.
+//
+// With a Member, each datagram takes the bytes that its seal adds, and arrives only where the seal opens. The
+// random bytes of the seal follow from the network's seed.
 class SimulatedTransport final : public Transport
 {
 public:

@@ -1,0 +1,91 @@
+// Members of one fleet with keys, over different backends.
+#include <gmock/gmock.h>
+#include <rabit/cyclonedds/CycloneDdsTransport.h>
+#include <rabit/fastdds/FastDdsTransport.h>
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "../conformance/ProcessHarness.h"
+#include "../conformance/Recorder.h"
+#include "../conformance/TestSample.h"
+
+namespace Rabit::Conformance
+{
+
+namespace
+{
+
+enum class Writing
+{
+    FastDds,
+    CycloneDds
+};
+
+void PrintTo(Writing by, std::ostream *out)
+{
+    *out << (by == Writing::FastDds ? "fastdds" : "cyclonedds");
+}
+
+class MixedMembers : public testing::TestWithParam<Writing>
+{
+protected:
+    // The backend that writes, and the other one.
+    Transport &Writer() { return GetParam() == Writing::FastDds ? _fastdds : _net.Backend(); }
+    Transport &Reader() { return GetParam() == Writing::FastDds ? _net.Backend() : _fastdds; }
+    TransportSettings Settings(const std::string &node) { return _net.SettingsFor(node, 1); }
+
+    void ExpectArrival(const std::string &text)
+    {
+        SampleRecorder recorder;
+        const auto writing = Writer().Open(Settings("uav1"), {});
+        const auto reading = Reader().Open(Settings("ground"), {});
+        const auto writer = writing->CreateWriter(TextTopic(), State(), {});
+        const auto reader = reading->CreateReader(TextTopic(), State(), {}, recorder.Handler());
+        ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, text), 1), WriteResult::Ok);
+        ASSERT_TRUE(_net.Until([&] { return recorder.Count() == 1; }));
+        EXPECT_EQ(recorder.Texts()[0], text);
+        EXPECT_EQ(recorder.All()[0].Node, "uav1");
+    }
+
+    ProcessHarness _net{std::make_unique<CycloneDdsTransport>(), "fleet"};
+    FastDdsTransport _fastdds;
+};
+
+TEST_P(MixedMembers, ASampleArrives)
+{
+    ExpectArrival("sample");
+}
+
+TEST_P(MixedMembers, ALargeSampleArrives)
+{
+    ExpectArrival(std::string(1'000'000, 'x'));
+}
+
+TEST_P(MixedMembers, OnATopicThatAMemberMayNotWriteNothingOfItIsDelivered)
+{
+    const TestMembers::Rules rules{{.Topic = "Allowed", .MayWrite = true, .MayRead = true},
+                                   {.Topic = "Text", .MayWrite = false, .MayRead = true}};
+    auto settings = Settings("uav1");
+    settings.Member = TestMembers("fleet").Member("uav1", rules);
+    SampleRecorder allowed;
+    SampleRecorder forbidden;
+    const auto uav = Writer().Open(settings, {});
+    const auto ground = Reader().Open(Settings("ground"), {});
+    const auto other = uav->CreateWriter(TextTopic(), State(), {});
+    const auto writer = uav->CreateWriter(TextTopic("Allowed"), State(), {});
+    const auto otherReader = ground->CreateReader(TextTopic(), State(), {}, forbidden.Handler());
+    const auto reader = ground->CreateReader(TextTopic("Allowed"), State(), {}, allowed.Handler());
+    ASSERT_EQ(WriteOnceTaken(*other, MakeSample(0, "forbidden"), 1), WriteResult::Ok);
+    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "allowed"), 1), WriteResult::Ok);
+    ASSERT_TRUE(_net.Until([&] { return allowed.Count() == 1; }));
+    EXPECT_EQ(otherReader->MatchedWriters(), 0);
+    EXPECT_EQ(forbidden.Count(), 0u);
+}
+
+}  // namespace
+
+INSTANTIATE_TEST_SUITE_P(Backends, MixedMembers, testing::Values(Writing::FastDds, Writing::CycloneDds));
+
+}  // namespace Rabit::Conformance

@@ -1,0 +1,361 @@
+#include "envelope/BlobExchange.h"
+
+#include <rabit/base/Earliest.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "envelope/KeyDerivation.h"
+
+namespace Rabit::Envelope
+{
+
+void BlobExchange::SetOwn(BlobKind kind, const Hash &hash,
+                          std::shared_ptr<const std::vector<std::uint8_t>> bytes)
+{
+    OwnBlob &own = _owned[static_cast<std::size_t>(kind)];
+    own.Of = hash;
+    own.Parts.assign(bytes ? BlobPartsOf(bytes->size()) : 0, OwnPart{});
+    own.Bytes = std::move(bytes);
+}
+
+std::chrono::milliseconds BlobExchange::ShareOf(std::chrono::milliseconds spread) const
+{
+    return spread * int{_spread} / 256;
+}
+
+void BlobExchange::Want(BlobKind kind, const Hash &hash, const Source &from, TimePoint now)
+{
+    auto found = _wanted.find(hash);
+    if (found == _wanted.end())
+    {
+        std::erase_if(_wanted,
+                      [&](auto &each)
+                      {
+                          const bool isOld = now - each.second.Named > Forgotten;
+                          if (isOld)
+                          {
+                              DropParts(each.second);
+                          }
+                          return isOld;
+                      });
+        const auto alike = std::count_if(_wanted.begin(), _wanted.end(),
+                                         [kind](const auto &each) { return each.second.Kind == kind; });
+        if (static_cast<std::size_t>(alike) >= MostWanted[static_cast<std::size_t>(kind)])
+        {
+            return;
+        }
+        found = _wanted.emplace(hash, Lack{}).first;
+        found->second.Kind = kind;
+        found->second.From = from;
+        found->second.Progress = now;
+        found->second.Retry.Begin(now + Gather + ShareOf(RequestSpread));
+    }
+    Lack &lack = found->second;
+    lack.Named = now;
+    if (lack.From.Tag == from.Tag)
+    {
+        lack.From = from;
+    }
+    else if (now - lack.Progress > SourcePatience)
+    {
+        // The parts may be wrong: they came from the former source.
+        DropParts(lack);
+        lack.From = from;
+        lack.Progress = now;
+        lack.Retry.Hasten(now + Gather);
+    }
+}
+
+void BlobExchange::Drop(const Hash &hash)
+{
+    if (const auto found = _wanted.find(hash); found != _wanted.end())
+    {
+        DropParts(found->second);
+        _wanted.erase(found);
+    }
+}
+
+void BlobExchange::DropParts(Lack &lack)
+{
+    _incomplete -= std::exchange(lack.Bytes, 0);
+    lack.Parts.clear();
+    lack.Size = 0;
+}
+
+void BlobExchange::Offer(Epoch in, TimePoint now)
+{
+    auto found = _offers.find(in);
+    if (found == _offers.end() && _offers.size() < MostOffers)
+    {
+        found = _offers.emplace(in, Offered{}).first;
+        found->second.Timer.Begin(now + ShareOf(OfferSpread));
+    }
+    if (found != _offers.end())
+    {
+        found->second.Heard = now;
+    }
+}
+
+void BlobExchange::Credit(std::size_t bytes)
+{
+    _credit = std::min(_credit + bytes, MostCredit);
+}
+
+std::optional<BlobExchange::Blob> BlobExchange::Received(const BlobMessage &message, const Source &from,
+                                                         bool isProven, TimePoint now)
+{
+    for (const BlobRequest &request : message.Requests)
+    {
+        Take(request, from, isProven, now);
+    }
+    if (!message.Part)
+    {
+        return std::nullopt;
+    }
+    // Another session offers, or sends what somebody asked for.
+    const OwnBlob &own = _owned[static_cast<std::size_t>(message.Part->Kind)];
+    const auto offered = _offers.find(from.In);
+    if (message.Part->Kind == BlobKind::Bulletin && message.Part->Of == own.Of && offered != _offers.end())
+    {
+        offered->second.Timer.Postpone(now + FirstOffer + ShareOf(OfferSpread));
+    }
+    Keep(*message.Part, from, now);
+    return Complete(message.Part->Of, now);
+}
+
+void BlobExchange::Keep(const BlobPart &part, const Source &from, TimePoint now)
+{
+    const auto found = _wanted.find(part.Of);
+    if (found == _wanted.end() || found->second.Kind != part.Kind || found->second.From.Tag != from.Tag)
+    {
+        return;
+    }
+    Lack &lack = found->second;
+    lack.Named = now;
+    if (lack.Size != part.Size)
+    {
+        DropParts(lack);
+        lack.Size = part.Size;
+    }
+    const auto [at, isNew] = lack.Parts.try_emplace(part.Index, part.Bytes.begin(), part.Bytes.end());
+    if (!isNew)
+    {
+        return;
+    }
+    lack.Progress = now;
+    lack.Bytes += part.Bytes.size();
+    _incomplete += part.Bytes.size();
+    // The other parts may be on their way.
+    lack.Retry.Begin(now + Gather);
+    if (_incomplete > MostIncomplete)
+    {
+        DropParts(std::max_element(_wanted.begin(), _wanted.end(),
+                                   [](const auto &a, const auto &b)
+                                   { return a.second.Bytes < b.second.Bytes; })
+                      ->second);
+    }
+}
+
+std::optional<BlobExchange::Blob> BlobExchange::Complete(const Hash &hash, TimePoint now)
+{
+    const auto found = _wanted.find(hash);
+    if (found == _wanted.end() || found->second.Size == 0 || LackingOf(found->second) != 0)
+    {
+        return std::nullopt;
+    }
+    Lack &lack = found->second;
+    Blob blob{.Kind = lack.Kind, .Of = hash};
+    for (const auto &[index, bytes] : lack.Parts)
+    {
+        blob.Bytes.insert(blob.Bytes.end(), bytes.begin(), bytes.end());
+    }
+    if (Sha256(blob.Bytes) != hash)
+    {
+        // A member lies. Any other source replaces it.
+        DropParts(lack);
+        lack.Progress = now - SourcePatience - std::chrono::milliseconds(1);
+        return std::nullopt;
+    }
+    Drop(hash);
+    return blob;
+}
+
+std::uint64_t BlobExchange::LackingOf(const Lack &lack)
+{
+    std::uint64_t lacking = lack.Size == 0 ? ~std::uint64_t{0} : AllBlobPartsOf(lack.Size);
+    for (const auto &[index, bytes] : lack.Parts)
+    {
+        lacking &= ~(std::uint64_t{1} << index);
+    }
+    return lacking;
+}
+
+void BlobExchange::Take(const BlobRequest &request, const Source &from, bool isProven, TimePoint now)
+{
+    const auto wanted = _wanted.find(request.Wanted);
+    if (wanted != _wanted.end() && !std::exchange(wanted->second.IsSpared, true))
+    {
+        wanted->second.Retry.Postpone(now + FirstRetry);
+    }
+    if (request.Of != _self)
+    {
+        return;
+    }
+    for (std::size_t kind = 0; kind < BlobKinds; ++kind)
+    {
+        const OwnBlob &own = _owned[kind];
+        if (own.Of != request.Wanted)
+        {
+            continue;
+        }
+        for (std::size_t index = 0; index < own.Parts.size(); ++index)
+        {
+            const std::size_t size =
+                BlobPartFront + std::min(BlobPartSize, own.Bytes->size() - index * BlobPartSize);
+            const bool isPaid = isProven || _credit >= size;
+            if ((request.Parts >> index & 1) != 0 && isPaid)
+            {
+                _credit -= isProven ? 0 : size;
+                WantPart(BlobKind{static_cast<std::uint8_t>(kind)}, index, from.In, now);
+            }
+        }
+    }
+}
+
+void BlobExchange::WantPart(BlobKind kind, std::size_t index, Epoch in, TimePoint now)
+{
+    OwnPart &part = _owned[static_cast<std::size_t>(kind)].Parts[index];
+    if (now - part.Asked >= Quiet)
+    {
+        part.Gap.Reset();
+    }
+    part.Asked = now;
+    if (now - part.SentAt >= Crossing && !std::exchange(part.IsWanted, true))
+    {
+        part.In = in;
+        part.NotBefore = std::max(part.NotBefore, now);
+    }
+}
+
+std::optional<TimePoint> BlobExchange::Due() const
+{
+    std::optional<TimePoint> due;
+    for (const OwnBlob &own : _owned)
+    {
+        for (const OwnPart &part : own.Parts)
+        {
+            due = part.IsWanted ? Earliest<TimePoint>({due, part.NotBefore}) : due;
+        }
+    }
+    for (const auto &[hash, lack] : _wanted)
+    {
+        due = Earliest<TimePoint>({due, lack.Retry.Due()});
+    }
+    for (const auto &[in, offered] : _offers)
+    {
+        due = Earliest<TimePoint>({due, offered.Timer.Due()});
+    }
+    return due;
+}
+
+std::optional<BlobExchange::Outgoing> BlobExchange::TakeDue(TimePoint now)
+{
+    MakeOffers(now);
+    auto taken = TakePart(now);
+    return taken ? std::move(taken) : TakeRequests(now);
+}
+
+// An offer is the first part, as if somebody had asked for it. It ends once nobody sends in that epoch.
+void BlobExchange::MakeOffers(TimePoint now)
+{
+    const bool hasBulletin = !_owned[static_cast<std::size_t>(BlobKind::Bulletin)].Parts.empty();
+    for (auto each = _offers.begin(); each != _offers.end();)
+    {
+        Offered &offered = each->second;
+        if (!offered.Timer.IsDue(now))
+        {
+            ++each;
+            continue;
+        }
+        if (!hasBulletin || now - offered.Heard > LongestOffer)
+        {
+            each = _offers.erase(each);
+            continue;
+        }
+        WantPart(BlobKind::Bulletin, 0, each->first, now);
+        offered.Timer.Done(now);
+        ++each;
+    }
+}
+
+// Takes the part that has been due for longest.
+std::optional<BlobExchange::Outgoing> BlobExchange::TakePart(TimePoint now)
+{
+    OwnPart *next = nullptr;
+    BlobPart message;
+    for (std::size_t kind = 0; kind < BlobKinds; ++kind)
+    {
+        OwnBlob &own = _owned[kind];
+        for (std::size_t index = 0; index < own.Parts.size(); ++index)
+        {
+            OwnPart &part = own.Parts[index];
+            if (part.IsWanted && part.NotBefore <= now &&
+                (next == nullptr || part.NotBefore < next->NotBefore))
+            {
+                next = &part;
+                message = {.Kind = BlobKind{static_cast<std::uint8_t>(kind)},
+                           .Index = index,
+                           .Size = own.Bytes->size(),
+                           .Of = own.Of,
+                           .Bytes = std::span(*own.Bytes).subspan(index * BlobPartSize)};
+                message.Bytes = message.Bytes.first(std::min(BlobPartSize, message.Bytes.size()));
+            }
+        }
+    }
+    if (next == nullptr)
+    {
+        return std::nullopt;
+    }
+    next->IsWanted = false;
+    next->SentAt = now;
+    next->NotBefore = now + next->Gap.Next();
+    return Outgoing{.In = next->In, .Message = WriteBlobMessage(_own, {.Part = message})};
+}
+
+// Asks, in one epoch, for all that is due there, or will be due soon and was asked for before.
+std::optional<BlobExchange::Outgoing> BlobExchange::TakeRequests(TimePoint now)
+{
+    std::optional<Epoch> in;
+    for (auto each = _wanted.begin(); each != _wanted.end();)
+    {
+        const bool isDue = each->second.Retry.IsDue(now);
+        if (isDue && now - each->second.Named > Forgotten)
+        {
+            DropParts(each->second);
+            each = _wanted.erase(each);
+            continue;
+        }
+        in = isDue && !in ? each->second.From.In : in;
+        ++each;
+    }
+    if (!in)
+    {
+        return std::nullopt;
+    }
+    BlobMessage message;
+    const auto answers = AnswerTakes * static_cast<int>(std::min(_wanted.size(), MostAnswers));
+    for (auto &[hash, lack] : _wanted)
+    {
+        if (lack.From.In == *in && lack.Retry.IsDue(now + Together) &&
+            message.Requests.size() < MostBlobRequests)
+        {
+            message.Requests.push_back({.Of = lack.From.Tag, .Wanted = hash, .Parts = LackingOf(lack)});
+            lack.IsSpared = false;
+            lack.Retry.Done(now, answers);
+        }
+    }
+    return Outgoing{.In = *in, .Message = WriteBlobMessage(_own, message)};
+}
+
+}  // namespace Rabit::Envelope

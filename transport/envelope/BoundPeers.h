@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_set>
+
+#include "envelope/Certificate.h"
+#include "envelope/Permissions.h"
+#include "envelope/Session.h"
+#include "envelope/Types.h"
+
+namespace Rabit::Envelope
+{
+
+// A session that was proven, and whose list of permissions is known.
+struct BoundPeer
+{
+    SessionTag Session = 0;
+    std::string Name;
+    Serial Number = 0;
+    CertificateRole Role = CertificateRole::Node;
+    std::shared_ptr<const Permissions> List;
+};
+
+// Which certificate speaks by which GUID prefix, for the guard. Bounded. Thread-safe.
+class BoundPeers
+{
+public:
+    static constexpr std::size_t Most = 4096;  // prefixes, and sessions
+
+    // True if the session's prefixes are bound.
+    bool Has(SessionTag session) const;
+    // Binds the prefixes of a session that was proven. `isGone`: true for sessions that have ended; asked
+    // only if there are many. Returns false if there are too many all the same.
+    bool Bind(const Session &session, SessionTag tag, std::shared_ptr<const Permissions> list,
+              const std::function<bool(SessionTag)> &isGone);
+    // Null: nobody speaks by that prefix.
+    std::shared_ptr<const BoundPeer> Find(const Rtps::GuidPrefix &prefix) const;
+    void RemoveIf(const std::function<bool(const BoundPeer &)> &is);
+    std::size_t Size() const;
+
+private:
+    mutable std::mutex _mutex;
+    std::map<Rtps::GuidPrefix, std::shared_ptr<const BoundPeer>> _peers;
+    std::unordered_set<SessionTag> _sessions;
+};
+
+}  // namespace Rabit::Envelope

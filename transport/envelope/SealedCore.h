@@ -1,0 +1,123 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/Ledger.h"
+#include "envelope/BlobExchange.h"
+#include "envelope/BoundPeers.h"
+#include "envelope/ByteBudget.h"
+#include "envelope/ClaimExchange.h"
+#include "envelope/Member.h"
+#include "envelope/NodeVoices.h"
+#include "envelope/Opener.h"
+#include "envelope/SealingSide.h"
+#include "envelope/SessionTable.h"
+
+namespace Rabit::Envelope
+{
+
+// SealedSession without its thread and clock: seals and opens the datagrams of one session, and
+// says which datagrams of its own are due. Time and random bytes are passed in. Thread-safe: sealing and
+// opening have a lock each, and calls nothing while it holds one.
+class SealedCore
+{
+public:
+    // Fills all bytes at random; returns false if there are none. Any thread.
+    using Random = std::function<bool(std::span<std::uint8_t>)>;
+
+    // Bytes per second of claims and blobs, with the headers of IP and UDP, and the largest burst.
+    static constexpr double Rate = 6000.0;
+    static constexpr double Burst = 4000.0;
+    static constexpr std::size_t MostLogs = 32;
+
+    // Null if there are no random bytes, or if OpenSSL fails.
+    static std::unique_ptr<SealedCore> Make(std::shared_ptr<Member> member, std::vector<RtpsHeader> headers,
+                                            Random random, TimePoint now);
+    SealedCore(const SealedCore &) = delete;
+    SealedCore &operator=(const SealedCore &) = delete;
+
+    // As those of SealedSession.
+    bool Seal(std::span<const std::uint8_t> message, const std::optional<Rtps::Place> &to,
+              OuterClass contents, std::vector<std::uint8_t> &sealed, TimePoint now);
+    std::span<std::uint8_t> Open(std::span<std::uint8_t> datagram, const Rtps::Place &from, TimePoint now);
+    std::shared_ptr<const BoundPeer> PeerOf(const Rtps::GuidPrefix &prefix) const
+    {
+        return _peers.Find(prefix);
+    }
+
+    // True if Open has made something due since the last call.
+    bool TakeIsNew() { return _isNew.exchange(false); }
+    std::optional<TimePoint> Due() const;
+    // Takes a sealed datagram that is due, for all; empty: none is. May store a bulletin, and so wait for the
+    // disk.
+    std::optional<std::vector<std::uint8_t>> TakeDue(TimePoint now);
+    std::vector<std::string> TakeLogs();
+
+    // For tests and counters.
+    std::uint64_t Opened(OpenFault fault) const
+    {
+        const std::lock_guard lock(_mutex);
+        return _opener.Count(fault);
+    }
+    struct Memory
+    {
+        std::size_t Sessions = 0;
+        std::size_t Others = 0;  // entries of tables, and bytes of blobs
+    };
+    Memory Remembered() const;
+    // True if datagrams of that session's prefix are opened now.
+    bool IsOpenTo(const Rtps::GuidPrefix &prefix, TimePoint now) const;
+
+private:
+    SealedCore(std::shared_ptr<Member> member, Self self, VerifyingKey authority, Random random,
+               TimePoint now);
+
+    Nonce RandomNonce();
+    // All below require _mutex.
+    void FollowEpochs();
+    void TakeFault(const Opener::Result &result, std::span<const std::uint8_t> datagram, const Outer &outer,
+                   const Rtps::Place &from, TimePoint now);
+    void TakeClaim(const Opener::Result &result, const Outer &outer, std::size_t size, TimePoint now);
+    void TakeBlobs(std::span<const std::uint8_t> bytes, const Session &sender, const Outer &outer,
+                   std::size_t size, TimePoint now);
+    void TakePlaces(std::span<const std::uint8_t> message, const Session &sender, SessionTag tag);
+    void Ask(const Session *session, SessionTag tag, Epoch in, TimePoint now);
+    bool IsReady(const Session &session, const BlobExchange::Source &from, TimePoint now);
+    void Listen(const Session &sender, SessionTag tag, TimePoint now);
+    void Refused(const Opener::Result &result);
+    void Log(std::string line);
+    std::optional<std::vector<std::uint8_t>> TakeOwn(TimePoint now);
+
+    const std::shared_ptr<Member> _member;
+    const Random _random;
+    Self _self;
+
+    mutable std::mutex _mutex;  // of opening; locked before those of the objects below
+    VerifyingKey _authority;
+    std::uint64_t _version = 0;
+    EpochSecrets _epochs;
+    SessionTable _sessions;
+    ClaimExchange _claims;
+    Opener _opener;
+    BlobExchange _blobs;
+    ByteBudget _budget{Rate, Burst};
+    NodeVoices _voices;
+    std::vector<std::vector<std::uint8_t>> _arrived;  // bulletins, to be learned without the lock
+    std::vector<std::string> _logs;
+    std::atomic<bool> _isNew = true;
+
+    // These have locks of their own.
+    SealingSide _sealing;
+    BoundPeers _peers;
+};
+
+}  // namespace Rabit::Envelope

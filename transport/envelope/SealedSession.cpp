@@ -1,0 +1,143 @@
+#include "envelope/SealedSession.h"
+
+#include <openssl/rand.h>
+
+#include <utility>
+
+#include "envelope/Member.h"
+#include "envelope/SealedCore.h"
+
+namespace Rabit::Envelope
+{
+
+namespace
+{
+
+bool FillAtRandom(std::span<std::uint8_t> bytes)
+{
+    return RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) == 1;
+}
+
+}  // namespace
+
+SealedSession::SealedSession(std::shared_ptr<FleetMember> member) : _member(std::move(member))
+{
+    // Start must not fail: it may run on a vendor's thread.
+    if (!Made({RtpsHeader{}}))
+    {
+        throw TransportError("OpenSSL has no random bytes, or does not take the keys of " + _member->Name(),
+                             "security");
+    }
+    Prepare();
+}
+
+std::unique_ptr<SealedCore> SealedSession::Made(std::vector<RtpsHeader> headers) const
+{
+    return SealedCore::Make(std::static_pointer_cast<Member>(_member), std::move(headers), FillAtRandom,
+                            Clock::now());
+}
+
+SealedSession::~SealedSession()
+{
+    Stop();
+}
+
+void SealedSession::Start(const RtpsHeader &vendor, const RtpsHeader &own, Calls calls)
+{
+    {
+        const std::lock_guard lock(_mutex);
+        if (_core)
+        {
+            return;
+        }
+        std::vector<RtpsHeader> headers{vendor};
+        if (own != vendor)
+        {
+            headers.push_back(own);
+        }
+        _calls = std::move(calls);
+        _core = Made(std::move(headers));
+        if (!_core)
+        {
+            // Nothing is sealed or opened from now on.
+            static_cast<Member &>(*_member).NoteCertain(_member->Name(), "OpenSSL has no random bytes");
+            return;
+        }
+    }
+    _isStarted.store(true, std::memory_order_release);
+    DueThread::Start();
+}
+
+void SealedSession::Stop()
+{
+    DueThread::Stop();
+}
+
+bool SealedSession::Seal(std::span<const std::uint8_t> message, const std::optional<Rtps::Place> &to,
+                         OuterClass contents, std::vector<std::uint8_t> &sealed)
+{
+    return IsStarted() && _core->Seal(message, to, contents, sealed, Clock::now());
+}
+
+std::span<std::uint8_t> SealedSession::Open(std::span<std::uint8_t> datagram, const Rtps::Place &from,
+                                            TimePoint now)
+{
+    if (!IsStarted())
+    {
+        return {};
+    }
+    const auto message = _core->Open(datagram, from, now);
+    if (_core->TakeIsNew())
+    {
+        const std::lock_guard lock(_mutex);
+        WakeIfEarlier();
+    }
+    return message;
+}
+
+std::optional<std::string> SealedSession::NameOf(const Rtps::GuidPrefix &peer) const
+{
+    const auto found = IsStarted() ? _core->PeerOf(peer) : nullptr;
+    return found ? std::optional(found->Name) : std::nullopt;
+}
+
+bool SealedSession::MayWrite(const Rtps::GuidPrefix &peer, std::string_view topic) const
+{
+    const auto found = IsStarted() ? _core->PeerOf(peer) : nullptr;
+    return found && found->List->MayWrite(topic, found->Role);
+}
+
+bool SealedSession::MayRead(const Rtps::GuidPrefix &peer, std::string_view topic) const
+{
+    const auto found = IsStarted() ? _core->PeerOf(peer) : nullptr;
+    return found && found->List->MayRead(topic);
+}
+
+std::size_t SealedSession::MostAdded() const
+{
+    return Sealer::MostAdded;
+}
+
+std::optional<TimePoint> SealedSession::Due()
+{
+    return _core->Due();
+}
+
+void SealedSession::Work(std::unique_lock<std::mutex> &lock)
+{
+    lock.unlock();
+    while (const auto sealed = _core->TakeDue(Clock::now()))
+    {
+        _calls.Send(std::nullopt, *sealed);
+    }
+    for (const std::string &line : _core->TakeLogs())
+    {
+        if (_calls.Log)
+        {
+            _calls.Log(line);
+        }
+    }
+    lock.lock();
+}
+
+}  // namespace Rabit::Envelope
