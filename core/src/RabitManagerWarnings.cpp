@@ -6,7 +6,7 @@
 #include <cstdio>
 
 // Warnings of settings that are most likely mistakes. The loop looks after the first unit of work, and after
-// each in which they changed, so that a program may make its settings in any order.
+// each in which the settings changed. So a program may make its settings in any order.
 namespace Rabit
 {
 namespace

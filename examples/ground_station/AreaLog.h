@@ -24,9 +24,9 @@ struct AreaReport
 
 // Records each search area that this ground station published, and its outcome at each aircraft.
 //
-// A report has no number for the area that the aircraft declines. The reason belongs to the wanted area if it
-// differs from the reason before that area, or if the report was made HeardAfterS after the area. Not
-// thread-safe.
+// A report has no number for the area that the aircraft declines. The reason belongs to the wanted area in
+// two cases: it differs from the reason before that area, or the report was made HeardAfterS after the area.
+// Not thread-safe.
 class AreaLog
 {
 public:

@@ -58,8 +58,8 @@ public:
         std::set<std::string> Searchers{};
         // Interval at which every aircraft gets a Goto; none: never.
         std::optional<std::chrono::milliseconds> Period{};
-        // Time from the first pose of an aircraft to its first command (at most an eighth of the duration),
-        // in which it is seen flying on its own.
+        // Time from the first pose of an aircraft to its first command, at most an eighth of the duration.
+        // Meanwhile the aircraft is seen flying on its own.
         std::chrono::milliseconds FirstAfter{2000};
         // Duration of the run; none: until RequestEnd.
         std::optional<std::chrono::milliseconds> Duration{};

@@ -36,8 +36,8 @@ struct ListedTarget
 };
 
 // Lists the targets in the order of their names. An aircraft that is gone may still know a target by a name
-// that the others have merged since. So a name that any aircraft calls a former one counts as such, unless
-// another aircraft denies it, or has a target of that name later.
+// that the others have merged since. So a name that any aircraft calls a former one counts as such. The
+// exception: another aircraft denies it, or has a target of that name later.
 std::vector<ListedTarget> ListTargets(const std::vector<SaidOfTargets> &said);
 
 }  // namespace Ground

@@ -9,10 +9,10 @@ namespace Ground
 // Compares the poses of one aircraft that arrived with those that it published.
 //
 // Each pose carries its number, and each mission state, which travels reliably, the number of the last pose
-// before it. Counting starts at the first mission state that is not older than the first pose heard, so that
-// nothing from before the connection counts as missed, and ends at the last mission state. The poses between
-// the two are compared by their numbers: neither clocks nor the order in which the two messages arrive
-// matter.
+// before it. Counting starts at the first mission state that is not older than the first pose heard. So
+// nothing from before the connection counts as missed. Counting ends at the last mission state. The poses
+// between the two are compared by their numbers: neither clocks nor the order in which the two messages
+// arrive matter.
 //
 // A restarted aircraft counts from 1 again; its incarnations are added up. Not thread-safe.
 class PoseCount

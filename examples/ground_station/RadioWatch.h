@@ -50,8 +50,8 @@ struct RadioUse
 // thread-safe.
 //
 // A stream is held back if something limits the radio and clearly less is sent than posted; posts dropped
-// by max_rate do not count. A link is held back if messages have waited there for a second without a break,
-// and more of them than are delivered in a second, or if some expired recently.
+// by max_rate do not count. A link is held back if messages have waited there for an unbroken second, and
+// more of them than are delivered in a second. It is also held back if some expired recently.
 class RadioWatch
 {
 public:

@@ -8,9 +8,9 @@
 namespace Ground
 {
 
-// While it lives, keeps the library's log lines for the code that draws the terminal, so that no line is
-// written into a table that is redrawn in place. Its destructor writes lines that were not taken to the
-// standard error. There may be only one at a time.
+// While it lives, keeps the library's log lines for the code that draws the terminal. So no line is written
+// into a table that is redrawn in place. Its destructor writes lines that were not taken to the standard
+// error. There may be only one at a time.
 class ScreenLog
 {
 public:

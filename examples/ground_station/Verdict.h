@@ -30,9 +30,9 @@ struct Demands
     bool TrackedTarget = false;         // a target found by one aircraft, validated by another, and followed
 };
 
-// A run passes if every aircraft is UP at its end, at least 90 % of the poses that each published were heard,
-// every command was acknowledged once by the aircraft it was meant for or certainly never arrived, and the
-// demands are met.
+// A run passes under four conditions. Every aircraft is UP at its end. At least 90 % of the poses that each
+// published were heard. Every command was acknowledged once by the aircraft it was meant for, or certainly
+// never arrived. The demands are met.
 struct Verdict
 {
     std::vector<std::string> Failures;  // one line for each failure

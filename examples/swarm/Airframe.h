@@ -14,9 +14,9 @@ struct Circle
 };
 
 // A model of an aircraft in still air: a point that turns by banking, within limits of bank, roll rate,
-// climb and acceleration. It flies straight towards a circle, slows down for it, joins it along the vector
-// field of Nelson, Barber, McLain and Beard ("Vector field path following for miniature air vehicles", IEEE
-// Transactions on Robotics 23(3), 2007) and stays on it.
+// climb and acceleration. It flies straight towards a circle, slows down for it, joins it along a vector
+// field, and stays on it. The field is that of Nelson, Barber, McLain and Beard ("Vector field path following
+// for miniature air vehicles", IEEE Transactions on Robotics 23(3), 2007).
 //
 // Not thread-safe.
 class Airframe

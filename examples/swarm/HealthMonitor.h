@@ -20,7 +20,7 @@ namespace Swarm
 // Fetches: Gateway/Fleet, to know whether the ground station is heard.
 // Posts:   Health (Uav::Health), each second.
 // Sends:   Uav::GoHome to the queue MissionControl, once when the battery is low or the ground station is
-//          silent for too long, and again each second while mission control declines it.
+//          silent for too long. Sends it again each second while mission control declines it.
 // Queue:   HealthMonitor takes mission control's answers (Uav::CommandAck). They do not wake it.
 class HealthMonitor : public Rabit::RabitManager
 {

@@ -12,7 +12,7 @@ namespace
 // Presence may send a quarter of a second of the budget in a row before others, but no more than this, in
 // bytes.
 constexpr double LargestPresenceBurst = 65536.0;
-// A driver that came late has caught up 10 ms (AirBudget), so a datagram may have to wait longer than its
+// A driver that came late has caught up 10 ms (AirBudget). So a datagram may have to wait longer than its
 // spacing, until the bytes that were caught up leave the last second.
 constexpr AirSchedule::Duration PromiseMargin = std::chrono::milliseconds(20);
 // Longest time by which a promised datagram is sent early. It is less than the shortest promise

@@ -109,9 +109,9 @@ public:
     // The stream whose datagram is to join one of class `first` that goes there and has room for `room` bytes
     // more for each destination: the stream that MayRide, or else the next one of the most important class
     // that may go on. A class may if it has credit, if it is `first`, and behind a beat: so it overdraws its
-    // credit by a datagram at most. Empty: that stream's last datagram went elsewhere, or its next one does
-    // not fit the datagram or the budget, would make a promised one late, or would take more than the share
-    // of the stream. No stream rides without a limit, and while a large datagram waits.
+    // credit by a datagram at most. Empty: that stream's last datagram went elsewhere. Also empty: its next
+    // one does not fit the datagram or the budget, would make a promised one late, or would take more than
+    // the stream's share. No stream rides without a limit, and while a large datagram waits.
     std::optional<StreamId> NextRider(TrafficClass first, const Destinations &to, std::size_t room,
                                       Duration now);
 

@@ -209,8 +209,8 @@ void CapacityEstimate::Correct(const DelayReports::Reports &said)
     }
 }
 
-// The rate rises by an equal amount for every node, so that in the end all have the same rate, since the
-// queue reduces rates in proportion. It also rises by `share` of the rate in each second.
+// The rate rises by an equal amount for every node, since the queue reduces rates in proportion. So in the
+// end all have the same rate. It also rises by `share` of the rate in each second.
 void CapacityEstimate::Rise(double share, Duration now)
 {
     const double passed = std::min(Seconds(now - _reportedAt), 1.0);

@@ -19,8 +19,8 @@ namespace Rabit
 //   long. Before the first report this is the delay of discovery, if it is above Target. Later it is a delay
 //   of all above LongWait, since reports then wait as long. It limits the node until a peer says, later than
 //   the long wait began, that nothing of ours is late.
-// - Then: the delivery rate while the delay rose, that is the bytes sent between two reported datagrams
-//   divided by the time between their arrivals, less a part to empty the queue.
+// - Then: the delivery rate while the delay rose, less a part to empty the queue. The delivery rate is the
+//   bytes sent between two reported datagrams divided by the time between their arrivals.
 // - As long as there is a queue, each report corrects the delivery rate. The rate is below it while the delay
 //   is above the goal, and a little above it while the delay is below.
 // - The rate rises by the same amount for every node, so that in the end all nodes on one radio have the
@@ -29,11 +29,11 @@ namespace Rabit
 // - Never below Floor. A rate of which less than half was used for 20 s, without delays, is out of date: it
 //   doubles. After the third doubling without use in between the node is unlimited again.
 // - Without reports an unlimited node stays unlimited: a node that hears nobody knows nothing of the air, and
-//   a guess would cost every silent wire its speed. A rate falls after three seconds, by a tenth each second
-//   and to a half at most (reports may be missing because of the queue), and does not rise. But if a peer's
-//   last report said that nothing is late, and its beats still come without one, then nothing is late: a rate
-//   that is used then doubles each second, after three quiet seconds. The apparent queue may have been a
-//   computer that stood still.
+//   a guess would cost every silent wire its speed. Without reports a rate does not rise. After three seconds
+//   it falls by a tenth each second, and to a half at most: reports may be missing because of the queue. But
+//   if a peer's last report said that nothing is late, and its beats still come without one, then nothing is
+//   late: a rate that is used then doubles each second, after three quiet seconds. The apparent queue may
+//   have been a computer that stood still.
 //
 // Sources: the rate is the delivery rate, and the queue is emptied once rather than shared (BBR, Cardwell et
 // al. 2016); a target for the delay above the least one, approached in proportion (LEDBAT, RFC 6817); bytes
@@ -56,9 +56,9 @@ public:
     void Sent(std::size_t bytes, Duration now) { _sent.Add(bytes, now); }
     // A peer reports that a datagram of ours came by `delay` later than the quickest of ours that it knows.
     // Each report is about a newer datagram than the one before. arrivedAt: the arrival there by our clock if
-    // the way took only the delay. That is now, less the time for which the peer has held the report, less
-    // the delay of the report itself, less the shortest round trip where it is known. So the datagram was
-    // sent at arrivedAt - delay.
+    // the way took only the delay. That is now, less the time for which the peer has held the report, and
+    // less the delay of the report itself. Where the shortest round trip is known, it is subtracted, too. So
+    // the datagram was sent at arrivedAt - delay.
     void Reported(Peer peer, Duration delay, Duration arrivedAt, Duration now);
 
     // A beat of a peer, sent at `sentAt` by our clock, came without a report of our datagrams' delay, though

@@ -12,10 +12,10 @@ namespace Rabit
 // Chooses the class that sends next, of those that have something to send.
 //
 // Command to Bulk: deficit round robin (Shreedhar and Varghese 1995), with two differences. Within a round
-// the most important class goes first as long as it has credit, so that a command waits for a datagram under
-// way and not for a round. And a class may overdraw its credit by a datagram and pays it back in the next
-// rounds, so that rounds may be shorter than datagrams. Shares, where all have something to send, are those
-// of TrafficClasses. The share of an idle class goes to the others; it keeps the credit of one round at most.
+// the most important class goes first as long as it has credit. So a command waits for a datagram under way
+// and not for a round. And a class may overdraw its credit by a datagram, and pays it back in the next
+// rounds. So rounds may be shorter than datagrams. Shares, where all have something to send, are those of
+// TrafficClasses. The share of an idle class goes to the others; it keeps the credit of one round at most.
 //
 // Presence: goes before all others as long as it has credit. It earns a third of the bytes that others send,
 // so its share is a quarter at most. Bytes that it sends while no other class waits are free.

@@ -20,8 +20,8 @@ namespace Rabit
 // seem 15 ms late at most: only the last two and a half minutes count. A delay above Longest is ignored: the
 // sender's clock stood still, with its computer.
 //
-// A node is reported to while its datagrams are later than Late, and for Echo after that, so that it learns
-// that nothing is late any more. Each report is about a newer datagram than the one before.
+// A node is reported to while its datagrams are later than Late, and for Echo after that. So it learns that
+// nothing is late any more. Each report is about a newer datagram than the one before.
 //
 // Bounded: MostPeers nodes, the one that was silent for longest is forgotten. No allocation for a node that
 // is known. Pure; `arrivedAt` and `now` never go back by more than threads do.

@@ -47,9 +47,9 @@ public:
     // The lower median of the newest reports of the peers that have reported lately; empty: none has.
     std::optional<Duration> Latest(Duration now) const;
     // True if the peers agree that datagrams come later than `later`. Either more than half of them say so in
-    // their last two reports (with four peers or more in the last one, with one peer in its last three). Or
-    // one peer says so in three reports over LongEnough, and no report of another peer about a datagram as
-    // new contradicts.
+    // their last two reports. With four peers or more the last report is enough, and one peer alone needs its
+    // last three. Or one peer says so in three reports over LongEnough, and no report of another peer about a
+    // datagram as new contradicts.
     bool Agree(Duration later, Duration now) const;
     // The lower median of f(reports) over the peers that have reported lately, empty results left out.
     template <typename Function>

@@ -12,8 +12,8 @@ namespace Rabit
 // together, as if all of them had been sent at its end. So memory is bounded at any rate, the sums are never
 // too low, and they are exact where datagrams are further apart.
 //
-// "A second" is 50 ms longer here: a radio shifts datagrams while others are on the air, and bytes that left
-// a node in 1001 ms must not fall into one second of the air.
+// "A second" is 50 ms longer here: a radio shifts datagrams while others are on the air. Bytes that left a
+// node in 1001 ms must not fall into one second of the air.
 //
 // Pure; `now` never goes back.
 class SlidingSecond

@@ -8,8 +8,8 @@
 namespace Rabit::Backfill
 {
 
-// Tells when messages of this recording may have been lost on their way to the disk, and when all that is
-// recorded is on it again. A pure state machine; `now` never goes back. Not thread-safe.
+// Tells when messages of this recording may have been lost on their way to the disk. Also tells when all that
+// is recorded is on it again. A pure state machine; `now` never goes back. Not thread-safe.
 class RecordingWatch
 {
 public:

@@ -48,8 +48,8 @@ public:
     // A part that can never be read is told for this long at least, and as long as it could be requested.
     static constexpr Duration LossTold = LongestLook;
     // Time in which a node is UP until an answer is taken for lost. The next one is asked to be half as
-    // large, since the channel may be too slow, and after an answer that came in a quarter of this, twice as
-    // large.
+    // large, since the channel may be too slow. After an answer that came in a quarter of this, the next one
+    // is asked to be twice as large.
     static constexpr Duration Patience = std::chrono::seconds(120);
 
     // The ledger must outlive the object. Posts older than `last` are not requested. Questions are numbered

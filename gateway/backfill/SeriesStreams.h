@@ -21,8 +21,8 @@ namespace Rabit::Backfill
 {
 
 // Records the messages that are backfilled: as they come live, and what was missed at its true time. The
-// sequence number of a message is the lower half of its stamp, and each series has channels of its own, so
-// that ReadLedger finds in the recording what is there. Thread-safe.
+// sequence number of a message is the lower half of its stamp, and each series has channels of its own. So
+// ReadLedger finds in the recording the posts that it holds. Thread-safe.
 class SeriesStreams
 {
 public:

@@ -13,14 +13,14 @@ namespace Rabit
 //
 // A beat carries the sender's source clock, which runs as its monotonic one does, and its wall clock, read
 // together. The smallest difference between arrival here and the sender's source clock belongs to the beat
-// that was least delayed (the minimum filter of NTP, RFC 5905, section 10). A round trip less that difference
-// gives the same for the way there, from us to the peer; a second filter keeps its minimum. The delay of the
-// quickest beat is taken to be half of the sum of both minima, because the two directions cannot be told
-// apart. A queue that was full during the few measured round trips makes nothing look older than it is,
-// unless it was full on the way there. Both filters forget after 15 to 30 seconds, so that drift does not add
-// up.
+// that was least delayed. This is the minimum filter of NTP (RFC 5905, section 10). A round trip less that
+// difference gives the same for the way there, from us to the peer; a second filter keeps its minimum. The
+// delay of the quickest beat is taken to be half of the sum of both minima, because the two directions cannot
+// be told apart. The queue may have been full during the few measured round trips. That makes nothing look
+// older than it is, unless the queue was full on the way there. Both filters forget after 15 to 30 seconds,
+// so that drift does not add up.
 //
-// A clock that stood still (a virtual machine that was paused, a computer that was suspended) makes all later
+// A clock may have stood still: a virtual machine was paused, or a computer suspended. That makes all later
 // differences larger, as a delay of every beat would. The echo that a beat carries tells the two apart: the
 // beat cannot have been on its way for longer than the round trip that it ends. If the estimate says that it
 // was, by more than 100 ms, the estimate is wrong, and the filter begins anew with that beat. One beat is
@@ -73,9 +73,10 @@ public:
     // When a beat with that source time was sent, by this node's monotonic clock; empty before the first
     // beat.
     std::optional<Duration> SentAt(Duration source) const;
-    // True if the last beat came more than 100 ms earlier than any that the filter knew, so that this node's
-    // own clock seems to have stood still. If it has, the peer takes this node's beats for old ones until one
-    // of them echoes a beat that the peer has sent since. A queue on the way that has emptied looks the same.
+    // True if the last beat came more than 100 ms earlier than any that the filter knew. This node's own
+    // clock then seems to have stood still. If it has, the peer takes this node's beats for old ones until
+    // one of them echoes a beat that the peer has sent since. A queue on the way that has emptied looks the
+    // same.
     bool StoodStillHere() const { return _stoodStillHere; }
     // How much later the last beat came than the quickest that the filter knows.
     Duration LastDelay() const { return _lastDifference - _difference.Value().value_or(_lastDifference); }

@@ -17,10 +17,9 @@ namespace Rabit
 // fraction of the wall clock's second, and the last 16 are random. The counter is kept in a small file, which
 // is written and synced before anybody else is told the incarnation.
 //
-// The counter never falls below the wall clock's seconds since 1970 if the clock is ahead of it (a clock that
-// shows 2097 or later is not believed). So the loss of the file is harmless as long as the wall clock is
-// right. Without a file the wall clock is all there is: incarnations then rise from start to start by the
-// fraction, within one second too.
+// The counter never falls below the wall clock's seconds since 1970. A clock that shows 2097 or later is not
+// believed. So the loss of the file is harmless as long as the wall clock is right. Without a file the wall
+// clock is all there is: incarnations then rise from start to start by the fraction, within one second too.
 //
 // Without a file, a wall clock that was set back between two starts gives a lower incarnation. Peers accept
 // it at once after a goodbye, otherwise once the former incarnation is STALE (PeerTable). The links do not

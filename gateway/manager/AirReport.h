@@ -39,10 +39,10 @@ public:
     };
 
     // Of the path to the nodes that `carries` tells. Returns its part of fleet.air. Fills in the rates of the
-    // links to these nodes, and adds to those of the publications, which are there already, the latter in the
-    // order of the publishers. Adds a problem for each publication whose newest value takes more than a
-    // second of the budget, or of the capacity. `capacity`: estimated capacity of the channel in bytes a
-    // second; empty: it does not limit this node.
+    // links to these nodes. Adds to the rates of the publications, which are there already, in the order of
+    // the publishers. Adds a problem for each publication whose newest value takes more than a second of the
+    // budget, or of the capacity. `capacity`: estimated capacity of the channel in bytes a second; empty: it
+    // does not limit this node.
     Gateway::AirStatus Fill(const TransportCounters &counters, std::optional<double> capacity,
                             const std::deque<TopicPublisher> &publishers, const Sent &sent,
                             const std::function<bool(std::string_view node)> &carries, Gateway::Fleet &fleet,

@@ -18,9 +18,9 @@
 namespace Rabit
 {
 
-// The queue links as streams of the schedule: each link one, of the class and weight of the first `send` rule
-// that fits, and for each node one for acknowledgements and hellos, of class command. A stream without
-// anything to send for a minute is removed, and made again when needed. An existing stream needs no
+// The queue links as streams of the schedule: each link is one, of the class and weight of the first `send`
+// rule that fits. For each node there is one for acknowledgements and hellos, of class command. A stream
+// without anything to send for a minute is removed, and made again when needed. An existing stream needs no
 // allocation. Gateway's thread only.
 class LinkStreams
 {

@@ -13,8 +13,8 @@ namespace Rabit
 {
 
 // Writes the values of one message. A message has one value, so a type with a key has one instance at a time.
-// After a value of another key was written, the former instance is disposed, in that order, so that no reader
-// is without a value in between. A disposal that the network does not take is owed, and comes before the next
+// After a value of another key was written, the former instance is disposed. This order leaves no reader
+// without a value in between. A disposal that the network does not take is owed, and comes before the next
 // value; so at most one is owed. A disposal that cannot be encoded is dropped; the transport logs and counts
 // it. Not thread-safe.
 class InstanceWriter

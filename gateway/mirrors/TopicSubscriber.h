@@ -37,8 +37,8 @@ namespace Rabit
 // whatever its partition; that has not been heard as live, or is in another incarnation by now; that
 // announces another definition of the type, whose samples may decode as something else; or that does
 // not announce the profile of the rule. So are samples that are older than the last one posted of that
-// incarnation, lie in the future, do not decode, or come from programs that are no nodes. Repetitions of a
-// State that is posted already are ignored, and not counted.
+// incarnation, lie in the future, or do not decode. Samples of programs that are no nodes are dropped and
+// counted, too. Repetitions of a State that is posted already are ignored, and not counted.
 //
 // That an instance is disposed, or has lost its writer, changes nothing. If it is the former one, the message
 // has another value by now, or will have. If it is the present one, there is nothing newer to show: a message

@@ -24,14 +24,13 @@ namespace Rabit
 // is overdue, and the beats that did not come lately; each beat that came takes Forgiven of these. So the
 // debt rises while a path is silent or slow, and a path that comes and goes stays in debt.
 //
-// - A node is reached by the first path on which it is UP and whose debt is not above the smallest one by
-// more
-//   than Leave, or Return if another path is in use. A path with a larger budget may owe Slow more, since
-//   links repair losses, and a slow path cannot carry what a fast one does.
+// - A node is reached by the first path on which it is UP and whose debt is small enough. It may be above the
+//   smallest debt by Leave, or by Return if another path is in use. A path with a larger budget may owe Slow
+//   more, since links repair losses, and a slow path cannot carry what a fast one does.
 // - A node says of others that it hears them by a later path alone. It is reached by no earlier one then.
 // - A path in doubt is not used alone (Second). It is in doubt while it owes more than another path by Doubt.
-//   It is so while queue messages are unanswered for longer than usual, or the node's frames come by another
-//   path alone, and for the time Both after that: by then its beats tell.
+//   It is also in doubt while queue messages are unanswered for longer than usual, or the node's frames come
+//   by another path alone. It stays so for the time Both after that: by then its beats tell.
 // - Answers go by the path by which messages of the node came as well: the node may lack those that went by
 //   the chosen one. Answers to answers do not, so this ends with the doubt.
 // - A node that starts again owes nothing: its silence was not the path's. If a node is UP on no path, the
@@ -62,8 +61,8 @@ public:
     explicit PathChoice(std::size_t paths, std::vector<double> budgets = {});
 
     std::size_t Paths() const { return _paths; }
-    // The state of the node on a path, as its beats there tell, and whether they say that it hears this node
-    // by that path and by no better one.
+    // The state of the node on a path, as its beats there tell. `hearsHereFirst`: the beats say that it hears
+    // this node by that path and by no better one.
     void Heard(const std::string &node, std::size_t path, Gateway::NodeState state, bool hearsHereFirst);
     // The beats of a node by one path.
     struct Beats

@@ -88,7 +88,7 @@ public:
     //
     // Does all due work except sending. Returns when work is due next, if nothing comes before: not later
     // than now if something could be sent. The gateway's thread is woken for all work that comes between this
-    // call and WillServe, and after that for work due before the time given to WillServe.
+    // call and WillServe. After that it is woken for work due before the time given to WillServe.
     Duration Advance();
     void VisitStreams(std::size_t most, const std::function<void(const LinkStream &)> &visit) const;
     // Writes one datagram, made now, of at most `most` bytes on the air (LinkNode::SendOne). Returns true if
@@ -128,12 +128,12 @@ public:
     LinkRefusal Enqueue(const std::string &node, const std::string &queue, const std::string &type,
                         const LinkPayload &payload, const Receipt &receipt);
 
-    // Has messages for a queue of nodes that fit the pattern expire after that time, whatever the
-    // configuration says, on links that are not in use yet. The last call that fits holds. Any thread.
+    // Sets the expiry of messages for a queue of nodes that fit the pattern, whatever the configuration says.
+    // It applies to links that are not in use yet. The last call that fits holds. Any thread.
     void SetExpiry(const std::string &node, const std::string &queue, std::chrono::milliseconds expire);
 
-    // Takes the links on which an accepted message was refused at the other node since the last call, each
-    // once, with the LinkTypeName of the newest such message. Any thread.
+    // Takes the links on which an accepted message was refused at the other node since the last call. Each
+    // link is there once, with the LinkTypeName of the newest such message. Any thread.
     struct Refused
     {
         std::string Node, Queue, Type;

@@ -12,7 +12,7 @@
 namespace Rabit
 {
 
-// Makes payloads out of the memory of those that are no longer held, so that a message in an outbox costs no
+// Makes payloads out of the memory of those that are no longer held. So a message in an outbox costs no
 // allocation in the steady state. The kept memory is bounded: some hundred kilobytes for each power of two of
 // sizes, and nothing above a megabyte. Thread-safe. Payloads may outlive the maker of the pool: they hold it.
 class LinkPayloadPool final : public std::enable_shared_from_this<LinkPayloadPool>

@@ -10,7 +10,7 @@
 #include <vector>
 
 // The bytes of IP packets that each node of a fleet sends by its configuration, by the rules of
-// docs/how_to/radio.md, while no node comes or goes and nothing is lost.
+// docs/how_to/radio.md. The rules assume that no node comes or goes, and that nothing is lost.
 namespace Rabit::Tool
 {
 

@@ -35,9 +35,9 @@ public:
     // `what`: `uav1/Pose`; the node may be a pattern; `Pose` alone means all nodes.
     Samples(FleetSession &session, const std::string &what);
 
-    // Waits until a node publishes the message and its type has come, at most until `until`, in seconds from
-    // the start of the session, but not for what no node can announce any more; then subscribes. Returns
-    // Good, or reports the reason and returns the exit code.
+    // Waits until a node publishes the message and its type has come; then subscribes. Waits at most until
+    // `until`, in seconds from the start of the session, and not for what no node can announce any more.
+    // Returns Good, or reports the reason and returns the exit code.
     int Open(double until);
     const DynamicType &Type() const { return *_type.Type; }
     const std::string &Message() const { return _message; }

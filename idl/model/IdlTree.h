@@ -1,7 +1,7 @@
 // Read access to the syntax tree of Cyclone DDS's IDL parser, for C++.
 //
 // The parser's own headers (idl/tree.h and others of version 0.10.2) declare enumerations in a way that C++
-// does not allow, so the tree is read in IdlTree.c, in C, and offered here as functions over opaque nodes.
+// does not allow. So the tree is read in IdlTree.c, in C. This file offers it as functions over opaque nodes.
 // Nothing here judges the tree: what is supported is decided in ModelReader.cpp.
 #pragma once
 

@@ -57,8 +57,8 @@ protected:
         signal(GetParam(), SIG_DFL);  // nohup has SIGHUP ignored
     }
 
-    // Calls the function while the manager is in its Shutdown after a first signal, and ends the process with
-    // 0 if the reactor then ends in order.
+    // Calls the function while the manager is in its Shutdown after a first signal. Ends the process with 0
+    // if the reactor then ends in order.
     template <typename During>
     [[noreturn]] static void AfterTheFirstSignal(During during)
     {

@@ -68,8 +68,8 @@ TEST(ASecondLiveNodeOfOneName, DelaysNoOtherLink)
     EXPECT_THAT(fleet.StatesSince("uav2", "ground"), ElementsAre("UP"));
 }
 
-// Three nodes whose messages have 8 kB, 200 kB and 2 MB send to one queue of 20 places, which is emptied five
-// times a second, over a medium of 200 Mbit/s that loses and doubles 5 %.
+// Three nodes send to one queue of 20 places, which is emptied five times a second. Their messages have 8 kB,
+// 200 kB and 2 MB. The medium of 200 Mbit/s loses and doubles 5 %.
 TEST(MessagesOfAllSizesForOneQueue, HaveTheirTurnsWithinFiveSeconds)
 {
     struct Sender
@@ -148,8 +148,8 @@ TEST(MessagesOfAllSizesForOneQueue, HaveTheirTurnsWithinFiveSeconds)
     }
 }
 
-// A ground station with 5 kB/s and a State of 20 kB comes to aircraft with budgets of their own, on one radio
-// of 250 kbit/s.
+// A ground station with 5 kB/s and a State of 20 kB comes to aircraft with budgets of their own. All are on
+// one radio of 250 kbit/s.
 struct ThinFleet
 {
     std::size_t Aircraft;

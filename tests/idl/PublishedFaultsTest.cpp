@@ -73,7 +73,7 @@ TEST(PublishedFaults, Cve2026_45097_SequencesOfTooManyElementsAreRefused)
     EXPECT_FALSE(CanRead<Reported::Bounded>(values("00000040", 5)));
 }
 
-// XCDR2 with a length in front of the body that is one too large (6492) or one too small (6512), or with a
+// XCDR2 with a length in front of the body that is one too large (6492) or one too small (6512). Also with a
 // body of another layout (6491, Cyclone DDS 2436). Nodes offer and read XCDR1 alone.
 TEST(PublishedFaults, FastDdsIssues6491_6492_6512_CycloneDdsIssue2436_Xcdr2IsRefused)
 {

@@ -8,9 +8,9 @@
 namespace Rabit
 {
 
-// Memory for samples. Buffers of up to 64 kB are kept for the next ones of about that size, so that samples
-// of one datagram need no allocation in the steady state: 1 MB at most of the largest ones, 3 MB in all.
-// Larger ones are freed after use. Thread-safe.
+// Memory for samples. Buffers of up to 64 kB are kept for the next ones of about that size: 1 MB at most of
+// the largest ones, 3 MB in all. So samples of one datagram need no allocation in the steady state. Larger
+// buffers are freed after use. Thread-safe.
 class BufferPool
 {
 public:

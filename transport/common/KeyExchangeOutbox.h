@@ -115,8 +115,8 @@ public:
     // Notes a datagram that arrived for us. Returns false if the vendor should not see it.
     bool Received(const KeyExchange &what, TimePoint now);
     // Notes the end of a datagram that arrived for us, also of a fragment. Anyone can forge a stamp. So its
-    // echo counts only if an exchange with the sender has not settled, and up to the time since the first
-    // stamp that went to the sender in this exchange.
+    // echo counts only if an exchange with the sender has not settled. It counts up to the time since the
+    // first stamp that went to the sender in this exchange.
     void Stamped(const KeyExchange::Prefix &from, const KeyExchangeStamp &stamp, TimePoint now);
     // Time at which to call TakeDue; none: nothing waits.
     std::optional<TimePoint> Due() const;

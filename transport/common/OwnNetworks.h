@@ -13,9 +13,10 @@ namespace Rabit
 {
 
 // Tells whether a datagram to a multicast group came by an interface that a session does not use. Linux gives
-// such a datagram to every socket of the group's port, if any socket of the host has joined the group on the
-// interface by which it came (IP_MULTICAST_ALL, ip(7)). Two sessions on two interfaces of one host would hear
-// the networks of both. Datagrams of other networks may come: routers carry groups, too.
+// such a datagram to every socket of the group's port (IP_MULTICAST_ALL, ip(7)). It is enough that any socket
+// of the host has joined the group on the interface by which the datagram came. Two sessions on two
+// interfaces of one host would hear the networks of both. Datagrams of other networks may come: routers carry
+// groups, too.
 class OwnNetworks
 {
 public:

@@ -5,10 +5,10 @@
 // - A usable network that the session was not opened with is joined when it has lasted for Settle. Each time
 //   the interface vanished within Memory doubles that time, up to LongestSettle.
 // - A network of the session that returns with the same interface and address needs nothing.
-// - A network that vanishes needs nothing either, with two exceptions. If a peer on it is also on another
-//   network of the session, or is on none (behind a router), the peer may go on sending to the address that
-//   is gone: the session joins anew without it after LostFor. If no network of the session has its address
-//   any more, loopback is joined after LostFor, for the other processes of this host.
+// - A network that vanishes needs nothing either, with two exceptions. A peer on it that is also on another
+//   network of the session, or on none (behind a router), may send to the old address: the session joins anew
+//   without the network after LostFor. If no network of the session has its address any more, loopback is
+//   joined after LostFor, for the other processes of this host.
 // - A network of the session that is still present but not to be used any more is left.
 // - Spacing separates two joins; after a failed one Retry applies, which doubles up to LongestRetry.
 //

@@ -1,5 +1,5 @@
-// A session that joins the network when there is one, and joins it anew when the host's networks change in a
-// way that matters (see RejoinDecision).
+// A session that joins the network when there is one. It joins anew when the host's networks change in a way
+// that matters (see RejoinDecision).
 //
 // Neither vendor follows a change of networks: a participant's announced addresses are fixed when it is made.
 // So the backend's session is closed and opened again, with all its writers and readers. Their holders notice

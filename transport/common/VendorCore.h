@@ -26,8 +26,8 @@ namespace Rabit
 
 // The common part of what all vendors' sessions share with their writers and readers: the peers.
 //
-// Lives until the session and all its writers and readers are gone, so that a writer that outlives its
-// session fails instead of touching freed memory. Thread-safe.
+// Lives until the session and all its writers and readers are gone. So a writer that outlives its session
+// fails instead of touching freed memory. Thread-safe.
 class VendorCore
 {
 public:

@@ -16,11 +16,11 @@
 namespace Rabit::Rtps
 {
 
-// Tells the own DDS implementation the content of peers' cards, in the peers' names, as reliably as if the
-// peers had sent it themselves (OMG DDSI-RTPS 2.3, 8.4). Each announcement of an endpoint has a number,
-// heartbeats name the numbers, and unacknowledged announcements are repeated. It also acknowledges to the
-// implementation in the peers' names (OwnCard). So between nodes with cards none of these datagrams use the
-// network.
+// Tells the own DDS implementation the content of peers' cards, in the peers' names. It does so as reliably
+// as if the peers had sent it themselves (OMG DDSI-RTPS 2.3, 8.4). Each announcement of an endpoint has a
+// number, heartbeats name the numbers, and unacknowledged announcements are repeated. It also acknowledges to
+// the implementation in the peers' names (OwnCard). So between nodes with cards none of these datagrams use
+// the network.
 //
 // `Put` replaces the lease in a peer's announcement, so that a silent participant is remembered for long:
 // beats tell whether it is alive.

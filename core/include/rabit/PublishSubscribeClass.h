@@ -59,8 +59,8 @@ public:
     // Stamps the message with the current time, copies it to the global copy, then calls the handlers. Time
     // stamps of one name strictly increase, by 1 ns if the clock did not move on; as doubles, two that are
     // less than 238 ns apart may be equal. If the wall clock was set back, they follow it. Under the system's
-    // clock they run ahead by at most 4 us, then a post waits. (Another clock may stand still, so there is no
-    // such limit.) Throws std::invalid_argument, changing nothing, if the message is of another type and
+    // clock they run ahead by at most 4 us, then a post waits. Another clock may stand still, so there is no
+    // such limit. Throws std::invalid_argument, changing nothing, if the message is of another type and
     // refuses the copy. If CopyMessage throws, that passes to the caller and the post did not happen.
     void PostMessage(RabitMessage *msg);
     // Posts with a time given by the caller: for messages from other nodes, which keep the time of their

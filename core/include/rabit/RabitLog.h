@@ -19,8 +19,8 @@ enum class RabitLogLevel
 // The log of the library, which prints nothing elsewhere. Warnings and errors go to stderr, one line each,
 // unless the program sets another sink.
 //
-// stderr never blocks the thread that logs. A line that stderr does not take at once (a full pipe that nobody
-// reads, a stopped terminal, a full disk, a closed descriptor) is dropped. The next line that is written says
+// stderr never blocks the thread that logs. A line is dropped if stderr does not take it at once: a full pipe
+// that nobody reads, a stopped terminal, a full disk, a closed descriptor. The next line that is written says
 // how many were dropped. A line longer than PIPE_BUF (4096 bytes on Linux) is cut and ends in "... (cut)".
 //
 // All functions may be called from any thread. None throws.

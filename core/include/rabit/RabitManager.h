@@ -46,9 +46,9 @@ class ManagerProgress;
 // least 10 ms; if it otherwise would not sleep, 100 ms. A manager whose Startup threw does not run its unit
 // of work: it goes on to Shutdown.
 //
-// Warnings, each once for a manager: a wake-up that its period keeps from waking it, a queue of its own that
-// nothing wakes it for, a unit of work of a second and more. They change nothing. Others learn of a manager
-// that hangs or fails while it does (RabitWorkspace::GetListOfTroubledManagers).
+// Warnings, each once for a manager: a wake-up that its period keeps from waking it, and a queue of its own
+// that nothing wakes it for. A third warning is for a unit of work of a second and more. They change nothing.
+// Others learn of a manager that hangs or fails while it does (RabitWorkspace::GetListOfTroubledManagers).
 //
 // Threads: the public methods may be called from any thread unless they say otherwise. The messages and
 // queues that the protected members point to are the manager's own; others attach to the same names.

@@ -50,10 +50,10 @@ public:
     // Sets whether Run reacts to SIGINT, SIGTERM and SIGHUP (default: true). Must not be called while the
     // reactor runs.
     void SetHandleSignals(bool handle);
-    // If a manager has not ended this long after it was told to shut down, a warning names it, and Run goes
-    // on waiting for it. A manager that hangs (RabitWorkspace::GetListOfTroubledManagers) for that long is
-    // named as well. A warning is repeated each time the wait has doubled. Default 5 s, at least 1 ms. Must
-    // not be called while the reactor runs.
+    // If a manager has not ended this long after it was told to shut down, a warning names it. Run goes on
+    // waiting for it. A manager that hangs (RabitWorkspace::GetListOfTroubledManagers) for that long is named
+    // as well. A warning is repeated each time the wait has doubled. Default 5 s, at least 1 ms. Must not be
+    // called while the reactor runs.
     void SetPatience(std::chrono::nanoseconds patience);
 
 private:

@@ -30,11 +30,11 @@ inline const char *ToString(RequestEnd end)
                                              : "no reply";
 }
 
-// The open requests of a manager: messages that it adds to queues, of this process or of other nodes, each of
-// which is answered by a message of class Reply in a queue of the manager. Each request ends exactly once.
+// The open requests of a manager: messages that it adds to queues, of this process or of other nodes. Each is
+// answered by a message of class Reply in a queue of the manager. Each request ends exactly once.
 //
-// A reply may be refused at the call while the announcement of a node that has just started has not come, for
-// a second or two. The manager that answers keeps such a reply, and adds it again in a later unit of work.
+// A reply may be refused at the call for a second or two, while the announcement of a node that has just
+// started is missing. The manager that answers keeps such a reply, and adds it again in a later unit of work.
 //
 // The message types are the program's. Request and reply carry the number of the request, in any field.
 //

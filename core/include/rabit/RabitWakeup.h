@@ -11,8 +11,8 @@
 namespace Rabit
 {
 
-// Where a manager sleeps and how it is woken. Shared between the manager and the handlers that wake it, so
-// that an event that races with the end of the manager finds something to signal.
+// Where a manager sleeps and how it is woken. Shared between the manager and the handlers that wake it. So an
+// event that races with the end of the manager finds something to signal.
 //
 // Signals do not stack: all that come between two passes cause one pass.
 class RabitWakeup

@@ -101,7 +101,8 @@ public:
     RabitClock &GetClock() const { return *_clock; }
 
     // Forgets every message and queue name; manager names stay. A reactor forgets the names of its own
-    // managers when its Run ends, and all of them if no manager of another reactor is left in the workspace.
+    // managers when its Run ends. It forgets all of them if no manager of another reactor is left in the
+    // workspace.
     void LeavingReactor();
 
     // The names of the managers that were added to a reactor, in that order, each once. Index -1: no such
@@ -218,8 +219,8 @@ public:
     // beyond 200 share an entry.
     std::vector<UnknownQueueInfo> GetListOfUnknownQueues() const;
     // The managers that hang or fail now, sorted by name:
-    // - a unit of work that has not returned for the longer of 1 s and two periods of its manager, unless the
-    //   manager never sleeps, and so may block there;
+    // - a unit of work that has not returned for the longer of 1 s and two periods of its manager. A manager
+    //   that never sleeps does not count, since it may block there;
     // - Startup or Shutdown that have not returned for 10 s;
     // - a manager whose last unit of work threw, less than 10 s or two of its periods ago;
     // - a manager whose Startup or Shutdown threw.

@@ -17,9 +17,9 @@ namespace Swarm
 //
 // The first autopilot that sends a HEARTBEAT is used; others on the channel are ignored. Update returns
 // each of its GLOBAL_POSITION_INT once, with the preceding attitude. A point to fly to is sent as
-// SET_POSITION_TARGET_GLOBAL_INT, and repeated twice a second while it is valid, because frames get lost
-// and PX4 otherwise leaves its offboard mode. The autopilot must be in a mode that obeys it, and flies at
-// its own speed.
+// SET_POSITION_TARGET_GLOBAL_INT, and repeated twice a second while it is valid. Frames get lost, and PX4
+// otherwise leaves its offboard mode. The autopilot must be in a mode that obeys it, and flies at its own
+// speed.
 class MavlinkVehicle final : public Vehicle
 {
 public:

@@ -12,8 +12,8 @@
 namespace Swarm
 {
 
-// Answers to commands that are not sent yet. An answer that the gateway accepts arrives. If the gateway
-// refuses it (because it does not know the other node yet, or too much waits already), it is kept here and
+// Answers to commands that are not sent yet. An answer that the gateway accepts arrives. The gateway may
+// refuse it, because it does not know the other node yet, or too much waits already. It is then kept here and
 // retried for half a minute. Not thread-safe.
 class Answers
 {

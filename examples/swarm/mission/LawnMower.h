@@ -11,8 +11,8 @@ namespace Swarm
 // Plans the search of an area in lanes along its longer side. Each lane begins at its nearer end. The
 // search repeats endlessly, and after an interruption goes on at the same place.
 //
-// Each of several aircraft begins at another lane and goes on through all lanes, so that the loss of an
-// aircraft leaves no part of the area out.
+// Each of several aircraft begins at another lane and goes on through all lanes. So the loss of an aircraft
+// leaves no part of the area out.
 class LawnMower
 {
 public:

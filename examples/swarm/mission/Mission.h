@@ -77,8 +77,8 @@ public:
     static constexpr double StepM = 15;           // a point to fly to gets a new course if it moved this far
     static constexpr double RepeatS = 2;          // a course that the autopilot does not fly is sent again
     // While it searches and looks at targets, an aircraft flies in its own layer above the altitude of the
-    // search area, by the number in its name. So aircraft that cross or circle one target stay apart
-    // without coordination. uav1 and uav11 share a layer.
+    // search area. The number in its name gives the layer. So aircraft that cross or circle one target stay
+    // apart without coordination. uav1 and uav11 share a layer.
     static constexpr double LayerM = 10;
     static constexpr int Layers = 10;
     static constexpr float HomeSpeedMps = 16;

@@ -226,8 +226,8 @@ void Mission::Take(const Uav::TargetReport &report)
     _reportGpsTimeS = _now.GpsTimeS;
 }
 
-// The reason not to look; empty if it will. An aircraft that circles its own target gives way to one whose
-// name comes earlier, if both mean the same target, or if it waits for an aircraft that has time.
+// The reason not to look; empty if it will. An aircraft that circles its own target gives way only to one
+// whose name comes earlier. Both must mean the same target, or it must wait for an aircraft that has time.
 std::string Mission::WhyNotLook(const Uav::TargetReport &report)
 {
     const Uav::Finding *own = _book.Find(_target);

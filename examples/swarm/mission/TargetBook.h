@@ -35,9 +35,9 @@ public:
     // Updates positions and names of the findings from the targets. If two findings turn out to be one
     // target, the one that got farther is kept, under the number of the pursued one.
     void Follow(const Uav::Targets &targets, std::uint32_t pursued);
-    // Takes up a target for this aircraft to pursue. Its camera must see it now, it must have seen it first
-    // (or the first aircraft is absent), and no aircraft pursues it or has finished it. Returns its number,
-    // 0 if there is none.
+    // Takes up a target for this aircraft to pursue. Its camera must see it now, and it must have seen it
+    // first (or the first aircraft is absent). No aircraft may pursue it or have finished it. Returns its
+    // number, 0 if there is none.
     std::uint32_t TakeUp(const Knowledge &known);
     // The finding of that number; null if there is none. Valid until the next TakeUp or Drop.
     Uav::Finding *Find(std::uint32_t number);

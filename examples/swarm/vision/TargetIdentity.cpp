@@ -115,8 +115,8 @@ void TargetTable::MergeThoseThatFit()
             Merge(first, second);
 }
 
-// If two certainly different targets share a place where only one is seen, the one with fewer of its
-// detections is moved back to its earlier place. Newer targets may then be that one, so pairs of it with
+// Two certainly different targets may share a place where only one is seen. The one with fewer of its
+// detections is then moved back to its earlier place. Newer targets may then be that one, so pairs of it with
 // newer targets are forgotten.
 void TargetTable::PartThoseOnOnePlace()
 {

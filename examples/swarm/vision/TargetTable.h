@@ -27,13 +27,13 @@ namespace Swarm
 // if that is likelier than a new target at its place. Two targets that keep fitting one place are merged,
 // unless one frame has shown both.
 //
-// Names. Every aircraft has a table and gets the detections of all aircraft as far as the radio allows, so
+// Names. Every aircraft has a table and gets the detections of all aircraft as far as the radio allows. So
 // each knows all targets, and there is no leader. The aircraft that saw a target first names it; the others
-// wait for the name for NameWaitS. They send each other names at once when one is new or two were merged,
-// and then periodically. If two aircraft did not hear each other and gave a target two names, the older one
-// holds, and the other is kept as a former name for those who know it. A restarted aircraft learns the
-// names from the others. If two aircraft mean different targets by one name, the one whose own name comes
-// later gives way.
+// wait for the name for NameWaitS. They send each other names at once when one is new or two were merged, and
+// then periodically. If two aircraft did not hear each other and gave a target two names, the older one
+// holds. The other is kept as a former name for those who know it. A restarted aircraft learns the names from
+// the others. If two aircraft mean different targets by one name, the one whose own name comes later gives
+// way.
 //
 // Times are GPS times. Implausible values from the network are dropped and counted. Not thread-safe.
 class TargetTable

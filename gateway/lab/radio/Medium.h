@@ -54,9 +54,9 @@ struct Arrival
 // arrives after the link's delay, in order unless reordering is switched on.
 //
 // Properties of real radios that are left out: collisions and back-off (turns are perfect), acknowledgements
-// and repetitions of unicast frames by the radio, a lower rate for multicast, rates that differ between
-// links, interference, and the back-pressure by which a full driver's queue blocks a socket. An outage is
-// silence at the receivers: senders do not notice it and go on using the air.
+// and repetitions of unicast frames by the radio, and a lower rate for multicast. Also left out are rates
+// that differ between links, interference, and the back-pressure by which a full driver's queue blocks a
+// socket. An outage is silence at the receivers: senders do not notice it and go on using the air.
 //
 // Pure: no clock, thread or socket. The caller gives the times. A time before the last one counts as the last
 // one. One thread at a time.

@@ -30,8 +30,8 @@ struct RecordedLife
     // The text of its configuration file; empty: it was made in code.
     std::string Configuration{};
     // For a simulated network: that of its file, without keys, recordings, foreign topics and rules for types
-    // that nobody used, and completed by what the node published, received and accepted. Of several paths the
-    // first is left.
+    // that nobody used. It is completed by what the node published, received and accepted. Of several paths
+    // the first is left.
     GatewayConfig Config{};
 };
 

@@ -51,8 +51,8 @@ struct SentPart
 
 // The messages of one link that wait for their outcome, oldest first: those of which parts were sent, then
 // those of which none was. Parts are cut and numbered when they are first sent. So a message that expires
-// before that leaves at once, a stream that starts anew has nothing to renumber, and only the newest of the
-// sent ones can be there in part.
+// before that leaves at once, and a stream that starts anew has nothing to renumber. Only the newest of the
+// sent messages can be there in part.
 class LinkOutbox
 {
 public:

@@ -296,7 +296,7 @@ LinkReceiver *LinkPeer::ReceiverOf(const LinkData &data)
     return receiver;
 }
 
-// A peer has no more links of its own at a time, so one whose queues have had other names in former
+// A peer has no more links of its own at a time. So a peer whose queues had other names in former
 // incarnations is heard nevertheless. A receiver that the peer still uses is made again with its next
 // message.
 bool LinkPeer::DropFormerReceiver()

@@ -111,8 +111,8 @@ private:
     bool TakeToken(std::uint32_t clock, std::int64_t time, LinkTime now);
     void HeardNow(LinkTime now);
 
-    // True if the frame names an incarnation that no wall clock gives yet, and does not prove by an echo that
-    // its sender hears this node.
+    // True if the frame names an incarnation that no wall clock gives yet, and no echo proves that its sender
+    // hears this node.
     bool IsIncredible(const LinkFrame &frame) const;
     bool HasPending() const;
     bool IsOpen() const;

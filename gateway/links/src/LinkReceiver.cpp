@@ -10,8 +10,8 @@ namespace Rabit
 namespace
 {
 
-// Two monotonic clocks, each adjusted by at most 500 ppm (the limit of the kernel's clock discipline), differ
-// by less than the time passed divided by this.
+// Two monotonic clocks differ by less than the time passed divided by this. Each is adjusted by at most 500
+// ppm (the limit of the kernel's clock discipline).
 constexpr std::int64_t DriftPart = 990;
 
 }  // namespace
@@ -312,8 +312,8 @@ void LinkReceiver::Describe(LinkAck &ack, std::uint64_t sourceLife) const
     }
 }
 
-// One complete message may wait here for its turn, so that a link whose messages are large takes part in the
-// turns of a full queue.
+// One complete message may wait here for its turn. So a link whose messages are large takes part in the turns
+// of a full queue.
 std::uint32_t LinkReceiver::Credit() const
 {
     const std::size_t share =

@@ -45,8 +45,8 @@ public:
         Parts,
         Question  // no parts: asks only whether the receiver hears it
     };
-    // Rule S2: puts the next datagram's parts into the frame, whose header is complete, such that it is not
-    // larger than `most` unless a single small part makes it so.
+    // Rule S2: puts the next datagram's parts into the frame, whose header is complete. The frame is not
+    // larger than `most`, unless a single small part makes it so.
     Filled Fill(LinkFrame &frame, std::size_t most, LinkTime now);
     // True if there is more to send as soon as the path allows it.
     bool HasMore() const { return HasLost() || MayCut(); }

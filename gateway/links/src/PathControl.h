@@ -15,13 +15,13 @@ namespace Rabit
 
 // How much may be under way to one node, and how fast it may be sent. All links to the node share it.
 //
-// Delay that rises is congestion: what is under way beyond what the path itself holds waits in a buffer, and
-// the window is brought to where the wait is a target (FAST TCP: window x (shortest round trip + target) /
-// round trip, once in each round trip; the target is that of LEDBAT, RFC 6817, plus the time that one
-// datagram takes). Below the target the window grows, twofold in slow start. The shortest round trip is
-// measured anew now and then, with next to nothing under way (BBR's PROBE_RTT). Loss alone is not congestion,
-// a radio loses: it shortens the target, since a buffer that overflows before the target is reached loses as
-// well. Where the round trip is that of a wire, what is lost has overflowed a socket's buffer, and the window
+// Delay that rises is congestion: what is under way beyond what the path itself holds waits in a buffer. The
+// window is brought to where the wait is a target (FAST TCP: window x (shortest round trip + target) / round
+// trip, once in each round trip; the target is that of LEDBAT, RFC 6817, plus the time that one datagram
+// takes). Below the target the window grows, twofold in slow start. The shortest round trip is measured anew
+// now and then, with next to nothing under way (BBR's PROBE_RTT). Loss alone is not congestion, a radio
+// loses: it shortens the target, since a buffer that overflows before the target is reached loses as well.
+// Where the round trip is that of a wire, what is lost has overflowed a socket's buffer. The window then
 // shrinks by a third, down to what a radio needs.
 //
 // Paths of one node that start at the same time may lead over one medium: they share the first window, as in

@@ -46,8 +46,8 @@ LinkTime PathControl::ReorderingTime() const
     return std::clamp(2 * _times.Variation(), std::min(_shortest / 4, _times.Smoothed()), _times.Smoothed());
 }
 
-// The bytes of the other paths that start may delay the answer, by as much as a medium does on which an empty
-// frame and its answer take the shortest round trip.
+// The bytes of the other paths that start may delay the answer. The delay is that of a medium on which an
+// empty frame and its answer take the shortest round trip.
 LinkTime PathControl::StartDelay() const
 {
     if (!_starts || _starting <= _inFlight)

@@ -14,7 +14,7 @@ constexpr LinkTime AsEchoed(LinkTime time)
 }
 
 // The smoothed round trip of a path and its variation, as RFC 6298 has them. Every frame carries the time of
-// the newest one that came the other way (RFC 7323), so each gives a measurement, even if data was sent
+// the newest one that came the other way (RFC 7323). So each gives a measurement, even if data was sent
 // twice.
 class RoundTrip
 {

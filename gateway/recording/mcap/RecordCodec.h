@@ -5,9 +5,9 @@
 #include "recording/mcap/McapRecords.h"
 
 // Append functions encode a record with its head. Read functions decode a record from the bytes behind its
-// head. They return nothing for bytes that are no such record, never read past them, and take no more
-// memory than a small multiple of their number. Bytes behind the fields that are known here are ignored, as
-// the format requires. Views in a decoded record point into the bytes.
+// head. They return nothing for bytes that are no such record, and never read past them. They take no more
+// memory than a small multiple of the number of bytes. Bytes behind the fields that are known here are
+// ignored, as the format requires. Views in a decoded record point into the bytes.
 namespace Rabit::Mcap
 {
 

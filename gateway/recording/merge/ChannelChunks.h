@@ -9,8 +9,8 @@
 namespace Rabit::Merge
 {
 
-// Selects channels of a file, and the chunks that hold them as far as the file's index tells, so that other
-// chunks need not be read.
+// Selects channels of a file, and the chunks that hold them as far as the file's index tells. Other chunks
+// need not be read.
 class ChannelChunks
 {
 public:

@@ -9,12 +9,12 @@
 namespace Rabit::Merge
 {
 
-// The relation between the clocks of two nodes over time, with a bound of its error, from the reports that
-// one of them made once a second (ClockReport).
+// The relation between the clocks of two nodes over time, with a bound of its error. It comes from the
+// reports that one of them made once a second (ClockReport).
 //
 // A report holds the estimate of a minimum filter that remembers 15 to 30 seconds, and half of the last
 // round trip. The bound of an estimate is half of the smallest round trip that the filter is known to
-// remember, plus the possible drift of the clocks meanwhile. The drift is measured over all reports; if
+// remember. The possible drift of the clocks meanwhile is added. The drift is measured over all reports; if
 // they are too few, it is taken as MostDrift. If estimates differ by more than drift explains (a clock was
 // slewed), their difference is part of the bound. Around a step (a clock stood still), the step is part of
 // the bound, too.

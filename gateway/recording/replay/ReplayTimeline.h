@@ -12,7 +12,7 @@ namespace Rabit::Replay
 
 // Tells which message of a recording is due when. `now` is any clock of the caller that never goes back,
 // not the recording's. After a jump (the beginning, a seek, a new round) the last message before it of each
-// stream comes first, so that all is there that was known then. Not thread-safe.
+// stream comes first. So all is there that was known then. Not thread-safe.
 class ReplayTimeline
 {
 public:

@@ -11,10 +11,10 @@ namespace Rabit::Tool::Doctor
 {
 
 // Tries the network beside DDS, with sockets of its own. Sends by multicast on each interface, and listens
-// where the participants of domains announce themselves. Also announces itself once in some domains, so
-// that participants answer, and in the first of them each 0.8 s until it has done so seven times: a call or
-// an answer may be lost. That costs some 190 bytes on the air for each call and interface, and the answers.
-// Listens from the construction on, on a thread of its own. On interfaces that are not used it only listens.
+// where the participants of domains announce themselves. Also announces itself once in some domains, so that
+// participants answer. In the first of them it does so each 0.8 s, seven times: a call or an answer may be
+// lost. That costs some 190 bytes on the air for each call and interface, and the answers. Listens from the
+// construction on, on a thread of its own. On interfaces that are not used it only listens.
 //
 // A gateway over Cyclone DDS answers a newcomer by multicast, which cannot be told from its periodic
 // announcement. It answers newcomers of an address alone once one of them has addressed it alone

@@ -21,10 +21,10 @@ struct LiveValue
 };
 
 // Texts and values that wait for one viewer. Texts go first. Values take a limited number of bytes. If a new
-// value has no room, the oldest values of its subscription are dropped, so that a slow viewer sees fewer
-// values of busy channels. If that is not enough, the new value is dropped too, unless it is of a State: the
-// viewer would show the former value until the next change. So of each subscription to a State one value may
-// exceed the limit; the server holds that value anyway. Drops are counted by channel. Not thread-safe.
+// value has no room, the oldest values of its subscription are dropped. So a slow viewer sees fewer values of
+// busy channels. If that is not enough, the new value is dropped too, unless it is of a State: the viewer
+// would show the former value until the next change. So of each subscription to a State one value may exceed
+// the limit; the server holds that value anyway. Drops are counted by channel. Not thread-safe.
 class LiveQueue
 {
 public:

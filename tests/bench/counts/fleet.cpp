@@ -3,9 +3,9 @@
 //
 // Usage: bench_fleet NODES [idle | flying]. Prints, for one node and second, the samples and bytes that it
 // writes and that arrive. `idle`: all subscribe to the `Note` of `ground` alone, and nobody posts one.
-// `flying`: all post a `Note` twice a second, `ground` follows all nodes, the others follow ten neighbours
-// and `ground`, and a manager of each node fetches them and `Gateway/Fleet`. With
-// `valgrind --tool=callgrind --instr-atstart=no` the instructions of the measured seconds are counted.
+// `flying`: all post a `Note` twice a second, and `ground` follows all nodes. The others follow ten
+// neighbours and `ground`. A manager of each node fetches the notes and `Gateway/Fleet`. With `valgrind
+// --tool=callgrind --instr-atstart=no` the instructions of the measured seconds are counted.
 #include "WiredTransport.h"
 
 #include <rabit/ManualClock.h>

@@ -1,6 +1,6 @@
 // The cost to a manager of recording its steps: a unit of work that reads the clock twice, fetches a pose,
-// takes a command and posts its state, without (0) and with (1) its recording. The time is that of the
-// manager's own thread; the recorder's thread comes on top.
+// takes a command and posts its state. It runs without (0) and with (1) its recording. The time is that of
+// the manager's own thread; the recorder's thread comes on top.
 #include <rabit/ManualClock.h>
 #include <rabit/RabitSteppedReactor.h>
 #include <rabit/recording/RecorderManager.h>

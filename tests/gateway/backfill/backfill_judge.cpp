@@ -1,5 +1,5 @@
 // backfill_judge FOLDER_OF_ORIGIN ORIGIN FOLDER GROUND MESSAGE...: compares the posts of each message in the
-// recording of their origin node with those in the recording of another node, and prints one JSON object a
+// recording of their origin node with those in the recording of another node. Prints one JSON object a
 // message.
 #include <algorithm>
 #include <cstdint>

@@ -28,7 +28,7 @@ std::shared_ptr<RecordingTarget> MakeTarget(const RabitClock &clock)
     return std::make_shared<RecordingTarget>("uav1", clock, std::make_unique<FakeDisk>(), settings);
 }
 
-// Posts a message on a thread of its own, and holds that thread between the post and all handlers that are
+// Posts a message on a thread of its own. Holds that thread between the post and all handlers that are
 // connected later, as a machine may.
 class HeldPost
 {

@@ -31,9 +31,9 @@ constexpr Time OnTheWay = 1s;
 // in the plan.
 constexpr int InARow = 5;
 constexpr int InARowWhenItDoesNotFit = 6;
-// Least share of the medium for tracks: a quarter, as the plans have it. If the medium carries less than in
-// the plan, or the node has a large note to send, notes take all that their class may have. Telemetry then
-// has 3 parts of 43, and a quarter of all goes to presence first (docs/how_to/radio.md).
+// Least share of the medium for tracks: a quarter, as the plans have it. Notes take all that their class may
+// have in two cases: the medium carries less than in the plan, or the node has a large note to send.
+// Telemetry then has 3 parts of 43, and a quarter of all goes to presence first (docs/how_to/radio.md).
 constexpr double ShareOfTracks = 1.0 / 4;
 constexpr double ShareWhenItDoesNotFit = 3.0 / 43 * 3 / 4;
 // Most bytes sent for each byte of work, and for each start and each other node.

@@ -20,8 +20,8 @@ namespace
 
 using namespace std::chrono_literals;
 
-// This long after the faults have stopped, all nodes must know each other and have the latest values, and
-// all accepted notes must have an outcome.
+// This long after the faults have stopped, all nodes must know each other and have the latest values. All
+// accepted notes must have an outcome.
 constexpr Time DrainTime = 60s;
 constexpr std::uint64_t MostSteps = 5'000'000;
 

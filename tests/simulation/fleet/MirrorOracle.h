@@ -22,10 +22,10 @@ public:
     // Largest error of an age: half the round trip, as the delays of the two directions cannot be told
     // apart.
     static constexpr Time AgeTolerance = std::chrono::milliseconds(1300);
-    // The same over a thin medium with short paths: at most the wait for the medium. (Not with the smallest
-    // budget, with which round trips are measured seldom.) For `Settles` after a node came or the medium
-    // changed, a quarter of the time of all full queues is added. All beats may have waited in queues for
-    // some seconds then, and a gateway forgets the quickest earlier one after 15 to 30 seconds.
+    // The same over a thin medium with short paths: at most the wait for the medium. The smallest budget is
+    // an exception, since round trips are measured seldom with it. For `Settles` after a node came or the
+    // medium changed, a quarter of the time of all full queues is added. All beats may have waited in queues
+    // for some seconds then, and a gateway forgets the quickest earlier one after 15 to 30 seconds.
     static constexpr Time ThinAgeTolerance = std::chrono::milliseconds(300);
     static constexpr Time Settles = std::chrono::seconds(45);
 

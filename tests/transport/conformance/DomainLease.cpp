@@ -19,8 +19,9 @@ namespace
 constexpr int FirstDomain = 20;
 constexpr int LastDomain = 99;
 
-// Binds a socket to a name of the abstract namespace of Unix sockets, which belongs to the network namespace,
-// as domains do, and is free again when its process ends. tests/integration/harness.py takes the same names.
+// Binds a socket to a name of the abstract namespace of Unix sockets. That belongs to the network namespace,
+// as domains do. The name is free again when its process ends. tests/integration/harness.py takes the same
+// names.
 bool Bind(int socket, const std::string &name)
 {
     sockaddr_un address{};

@@ -1,5 +1,6 @@
 // A DDS implementation as far as discovery goes: it announces itself, believes the announcements of others,
-// tells its endpoints to each participant that it knows, and repairs what was lost (OMG DDSI-RTPS 2.3, 8.5).
+// and tells its endpoints to each participant that it knows. It repairs what was lost (OMG DDSI-RTPS 2.3,
+// 8.5).
 #pragma once
 
 #include <algorithm>

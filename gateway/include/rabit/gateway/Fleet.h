@@ -9,9 +9,9 @@
 //     if (node != nullptr && node->state == Rabit::Gateway::NodeState::UP)
 //
 // A node that has become UP was heard: its beats arrive. Its States follow: its beats tell their versions,
-// and those that lack here are requested until they have come, at 20 % loss 95 % of them within 0.6 s and 99
-// % within 1.3 s. A State that the node has not posted in this life does not come; the local message then
-// keeps the value of an earlier life, whose age grows.
+// and those that lack here are requested until they have come. At 20 % loss 95 % of them come within 0.6 s
+// and 99 % within 1.3 s. A State that the node has not posted in this life does not come; the local message
+// then keeps the value of an earlier life, whose age grows.
 #include <algorithm>
 #include <string_view>
 

@@ -55,8 +55,8 @@ struct ForeignRule
     // arrival. The writer's clock is then believed to show UTC.
     bool SourceTimeIsTrusted = false;
     // For Delivery::Queue: samples that may wait for room in the queue, or messages that may wait to be
-    // written, 1 to 1,000,000, and their serialized bytes, 1 to 2^40. Further samples are dropped, further
-    // messages are refused when they are added. A sample above CapacityBytes waits only alone.
+    // written, 1 to 1,000,000. CapacityBytes: their serialized bytes, 1 to 2^40. Further samples are dropped,
+    // further messages are refused when they are added. A sample above CapacityBytes waits only alone.
     std::size_t Capacity = 1000;
     std::size_t CapacityBytes = 16u << 20;
     int Line = 0;  // where it stands in the file, for error messages; 0: made in code

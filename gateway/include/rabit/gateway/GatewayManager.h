@@ -52,16 +52,16 @@ std::vector<std::shared_ptr<Transport>> TransportsOf(
 // (RabitHandlerThread); RabitQuickHandlers run on the transport's thread, and so do all under a stepped
 // transport.
 //
-// Several gateways may serve one workspace, for instance one on a radio and one on a LAN, if each has a name
-// of its own (GatewayConfig::Name): a second gateway of one name throws ConfigError. A queue message goes
-// through the gateway that knows the node, "*/<queue>" to the nodes of all gateways. A node that two gateways
-// know is a problem by name; its queue messages go through the gateway that was there first.
+// Several gateways may serve one workspace, for instance one on a radio and one on a LAN. Each must have a
+// name of its own (GatewayConfig::Name): a second gateway of one name throws ConfigError. A queue message
+// goes through the gateway that knows the node, "*/<queue>" to the nodes of all gateways. A node that two
+// gateways know is a problem by name; its queue messages go through the gateway that was there first.
 //
 // Errors: the constructor throws ConfigError for a configuration that cannot be used, such as `subscribe`
-// twice for one message, an unknown type or a name taken, and for a TransportError of the backend. Then
-// nothing has been started. RunNode makes it one line and exit code 2; a program that makes the gateway by
-// hand catches it (RunProgram does that for any main()), or the exception ends the process. Afterwards
-// nothing from the network throws or ends the process.
+// twice for one message, an unknown type or a name taken. It also throws ConfigError for a TransportError of
+// the backend. Then nothing has been started. RunNode makes it one line and exit code 2; a program that makes
+// the gateway by hand catches it (RunProgram does that for any main()), or the exception ends the process.
+// Afterwards nothing from the network throws or ends the process.
 class GatewayManager : public RabitManager
 {
 public:
@@ -72,8 +72,8 @@ public:
     GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport);
     GatewayManager(const GatewayConfig &config, std::shared_ptr<Transport> transport,
                    RabitWorkspace &workspace, RandomSource random = SystemRandom);
-    // Takes one transport for each of GatewayConfig::Paths, in their order; the former constructors use one for
-    // all. Throws std::invalid_argument if there are not as many transports as paths.
+    // Takes one transport for each of GatewayConfig::Paths, in their order; the former constructors use one
+    // for all. Throws std::invalid_argument if there are not as many transports as paths.
     GatewayManager(const GatewayConfig &config, std::vector<std::shared_ptr<Transport>> transports,
                    RabitWorkspace &workspace = *RabitWorkspace::GetWorkspace(),
                    RandomSource random = SystemRandom);

@@ -7,8 +7,8 @@
 // Threads
 //   Every method may be called from any thread, except from inside a handler (see below).
 //   Handlers run on a thread of the backend. Two handlers of one reader never run at once; handlers of
-//   different readers may. A handler must be quick, must not block, must not throw (what it throws is
-//   caught, counted and logged) and must not call back into the transport: signal another thread instead.
+//   different readers may. A handler must be quick, must not block, and must not throw (what it throws is
+//   caught, counted and logged). It must not call back into the transport: signal another thread instead.
 //
 // Lifetime
 //   A session owns its participant in the network. Writers and readers belong to their session and must be
@@ -19,13 +19,13 @@
 //   A session may be opened before there is a network. A real backend follows the host's networks by itself.
 //   A network that vanishes and returns unchanged needs no action: peers are Lost and appear again. If a
 //   usable network or address comes that the session was not opened with, the backend joins the network anew
-//   and logs it. All peers are then Lost and appear again, readers get transient-local history once more, and
-//   writers start with an empty history, a new WriterId and new numbers. The backend also joins anew, without
-//   the network that is gone, if a peer might go on sending there, or for loopback if no other network is
-//   left. It does so rarely: an interface that comes and goes is joined later each time, and never twice in a
-//   second. During the change, and as long as there is no usable network, writes end TimedOut at once and
-//   nothing is matched. Making or destroying a writer or reader waits for the end of the change: milliseconds
-//   to tenths of a second.
+//   and logs it. All peers are then Lost and appear again, and readers get transient-local history once more.
+//   Writers start with an empty history, a new WriterId and new numbers. The backend also joins anew, without
+//   the network that is gone, if a peer might go on sending there. It joins anew for loopback if no other
+//   network is left. It does so rarely: an interface that comes and goes is joined later each time, and never
+//   twice in a second. During the change, and as long as there is no usable network, writes end TimedOut at
+//   once and nothing is matched. Making or destroying a writer or reader waits for the end of the change:
+//   milliseconds to tenths of a second.
 //
 //   A network is usable if its interface is up and has a carrier and an IPv4 address. If no interface is
 //   named, a network must also be capable of multicast, unless multicast is off or Peers are listed; loopback
@@ -273,10 +273,10 @@ public:
     // number is missing, and their SamplesLost may count it. If the node has no matched reader, nothing is
     // sent and the result is Ok.
     //
-    // The sample goes to the session of the node that appeared last, and to each other session of the node of
-    // which a reader here has delivered a sample since. Without multicast that is one datagram for each. So a
-    // node that was killed and restarted costs one datagram, although its former session is remembered for a
-    // while.
+    // The sample goes to the session of the node that appeared last. It also goes to each other session of
+    // the node of which a reader here has delivered a sample since. Without multicast that is one datagram
+    // for each. So a node that was killed and restarted costs one datagram, although its former session is
+    // remembered for a while.
     virtual WriteResult WriteTo(const std::string &node, const SampleEncoder &sample,
                                 std::int64_t sourceTime) = 0;
     // Like Write, but only the first datagram of a sample goes now. The others are held and go in order, one
@@ -297,9 +297,10 @@ public:
     // Says that the instance named by this sample no longer exists. Only for keyed topics, else Failed.
     // Matched reliable readers are told, after the earlier samples that Depth still keeps. Once all of them
     // have acknowledged the disposal, at the latest with the next write, the writer keeps nothing of the
-    // instance, not even that it existed. A later reader therefore hears nothing of it, nor does a reader
-    // that had lost the writer meanwhile but no sample. The writer also unregisters the instance, so that
-    // readers need not keep it for this writer. Writing the instance again makes it alive again.
+    // instance. It does not even keep that the instance existed. A later reader therefore hears nothing of
+    // it, nor does a reader that had lost the writer meanwhile but no sample. The writer also unregisters the
+    // instance, so that readers need not keep it for this writer. Writing the instance again makes it alive
+    // again.
     virtual WriteResult Dispose(const SampleEncoder &sample, std::int64_t sourceTime) = 0;
     // Readers matched now, in other sessions.
     virtual int MatchedReaders() const = 0;
@@ -398,10 +399,10 @@ public:
     virtual ~TransportSession() = default;
     // Makes a writer on a topic. The partitions are those of the OMG DDS specification, 2.2.3.13: names,
     // matched by equal names or by the other side's `*` and `?` patterns; "" is the default partition. An
-    // empty list means {""}. Throws TransportError if the same topic name was opened with another type in
-    // Does not wait for readers, and never for the network. It may wait for a handler or a write in progress
-    // (100 ms), and while the session joins the network anew (about a second). The writer is announced when
-    // this returns; readers match it as they hear of it.
+    // empty list means {""}. Throws TransportError if the topic is open with another type in this session, or
+    // if a name is impossible. Does not wait for readers, and never for the network. It may wait for a
+    // handler or a write in progress (100 ms), and while the session joins the network anew (about a second).
+    // The writer is announced when this returns; readers match it as they hear of it.
     virtual std::unique_ptr<TransportWriter> CreateWriter(const TopicDescription &topic, const TopicQos &qos,
                                                           const std::vector<std::string> &partitions) = 0;
     // Makes a reader on a topic; the handler may be called before this returns. Samples of this session's own
@@ -425,11 +426,11 @@ public:
     // all is well. Any thread.
     virtual std::vector<SettingsProblem> NetworkProblems() const { return {}; }
     // Begins a turn of the calling thread: the datagrams of samples that it writes until EndTurn are sent by
-    // EndTurn. Those to the same address and port go as one datagram of at most `mostBytes` bytes, the
-    // headers of IP and UDP included, in the order in which they were written. A datagram that does not fit
-    // goes by itself. Counters count a kept datagram at once, with the bytes that it adds to what is sent.
-    // With a Member, the bytes of the seal are counted when the datagram goes.
-    // Returns false, and begins nothing, if this session sends each datagram by itself, as with Security.
+    // EndTurn. Those to the same address and port go as one datagram, in the order in which they were
+    // written. It has at most `mostBytes` bytes, the headers of IP and UDP included. A datagram that does not
+    // fit goes by itself. Counters count a kept datagram at once, with the bytes that it adds to what is
+    // sent. With a Member, the bytes of the seal are counted when the datagram goes. Returns false, and
+    // begins nothing, if this session sends each datagram by itself, as with Security.
     //
     // A turn is short: between the calls the thread writes some samples. Only one thread uses turns, and has
     // one turn at a time. A session that joins the network anew meanwhile drops the datagrams.

@@ -10,7 +10,7 @@ namespace Rabit
 class RecorderManager;
 
 // Requests posts that are missing in the recording of this node (RecordSettings::Backfill) from the
-// recordings of other nodes, and answers such requests and those for files (GatewayConfig::Fetch).
+// recordings of other nodes. Answers such requests, and those for files (GatewayConfig::Fetch).
 // gateway/backfill/README.md has the rules. RunNode makes one if IsUsed.
 class BackfillManager final : public RabitManager
 {

@@ -14,12 +14,12 @@
 // if need be, and whether a changed manager does the same.
 //
 // A node records the steps of the managers that are named in its configuration (`record: steps:`). A step
-// is one Startup, unit of work or Shutdown. It holds, in the manager's own order, every reading of the
-// clock, every message that a fetch brought or that was taken from a queue, whether queues accepted what
-// the manager added, and the messages that it posted and added. The manager runs again alone, in a
-// RabitSteppedReactor and a workspace of its own: the same steps, with the same readings. So neither the
-// order of threads nor the time that anything took matters. The messages that it posts and adds to queues
-// are compared with the recorded ones, byte for byte.
+// is one Startup, unit of work or Shutdown. It holds every reading of the clock, and every message that a
+// fetch brought or that was taken from a queue. It also holds whether queues accepted what the manager added,
+// and the messages that it posted and added. All are in the manager's own order. The manager runs again
+// alone, in a RabitSteppedReactor and a workspace of its own: the same steps, with the same readings. So
+// neither the order of threads nor the time that anything took matters. The messages that it posts and adds
+// to queues are compared with the recorded ones, byte for byte.
 //
 // A rerun is exact for a manager that is a function of what it reads through Rabit. It needs:
 // - The recording of the manager's Startup and of all steps since. A black box, or a recording whose oldest
@@ -36,8 +36,8 @@
 //   exact.
 // - No later outcomes of receipts: a rerun tells a receipt at once whether the queue accepted the message,
 //   and nothing afterwards.
-// - No random numbers that differ from run to run, no threads, files, sockets or devices of its own, no
-//   order that follows from addresses, and no variables that it shares with other managers. A manager that
+// - No random numbers that differ from run to run, and no order that follows from addresses. No threads,
+//   files, sockets or devices of its own, and no variables that it shares with other managers. A manager that
 //   reads a device is best split into one that reads and one that decides.
 // - The same types, compiler and libraries where numbers must agree to the last bit.
 namespace Rabit

@@ -12,7 +12,7 @@ namespace Rabit
 {
 
 // The messages of an IDL file, for a program that loads them while it runs. The types have the IdlText that
-// the generator gives those of the same file, so nodes with generated types and with these take each other's
+// the generator gives those of the same file. So nodes with generated types and with these take each other's
 // messages.
 //
 // The file is one of this computer that its user trusts: the parser is not made for hostile texts

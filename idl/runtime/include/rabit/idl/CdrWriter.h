@@ -15,8 +15,8 @@ namespace Rabit::Idl
 // Writes the body of a sample (what follows the encapsulation header) as plain XCDR1, OMG
 // DDS-XTypes 1.3, 7.4.1, little endian, into a borrowed buffer. Alignment is relative to the begin of the
 // buffer. Unlike Fast-CDR, which does the encoding, it writes zeros where alignment leaves gaps, so that
-// equal values give equal bytes, and it returns false where Fast-CDR throws. After a false the contents of
-// the buffer are unspecified. Used by one thread at a time.
+// equal values give equal bytes. It returns false where Fast-CDR throws. After a false the contents of the
+// buffer are unspecified. Used by one thread at a time.
 class CdrWriter
 {
 public:

@@ -17,10 +17,10 @@ namespace Rabit
 //
 // The bytes are those of a DDS sample of the type: a 4-byte encapsulation header (CDR, in the byte order
 // that it names; we write little endian), then plain XCDR1 (OMG DDS-XTypes 1.3, 7.4.1), with no header of
-// Rabit's own, filled up with zeros to a multiple of 4 bytes. The last two bits of the header give the
-// number of these zeros (XTypes 1.3, 7.6.3.1.2). Equal messages give equal bytes. One object exists for
-// each generated message class and lives as long as the process; DynamicType is for types made at run time.
-// All are immutable and may be used from any thread.
+// Rabit's own. Zeros fill it up to a multiple of 4 bytes. The last two bits of the header give the number of
+// these zeros (XTypes 1.3, 7.6.3.1.2). Equal messages give equal bytes. One object exists for each generated
+// message class and lives as long as the process; DynamicType is for types made at run time. All are
+// immutable and may be used from any thread.
 class MessageType
 {
 public:
@@ -45,16 +45,16 @@ public:
     // the message is of another type.
     virtual std::size_t SerializedSize(const RabitMessage &message) const = 0;
     // Writes the message. Returns the bytes written; 0 if the buffer is too small or the message cannot be
-    // expressed in IDL (a bounded string or sequence that is too long, a string with a zero byte in it, an
-    // enum or bitmask value that is not declared). Throws as SerializedSize.
+    // expressed in IDL. Such a message has a string or sequence beyond its bound, a zero byte in a string, or
+    // an undeclared enum or bitmask value. Throws as SerializedSize.
     virtual std::size_t Serialize(const RabitMessage &message, std::span<std::uint8_t> buffer) const = 0;
     // Reads a message from borrowed bytes of either byte order. Returns false if they are not a sample of
-    // this type (truncated, more than 3 bytes too long, out of bounds, an unknown encoding, an impossible
-    // value); the message then has valid but unspecified contents. No bytes make it throw or read past
-    // their end. It allocates at most 64 KiB plus 256 bytes for each of the bytes, and refuses a message
-    // that would take more: one with very many values that are small on the wire and large in memory
-    // (idl/README.md). The message's time stamp, its three ints and its global reference stay unchanged.
-    // Throws as SerializedSize.
+    // this type: truncated, more than 3 bytes too long, out of bounds, an unknown encoding, or an impossible
+    // value; the message then has valid but unspecified contents. No bytes make it throw or read past their
+    // end. It allocates at most 64 KiB plus 256 bytes for each of the bytes, and refuses a message that would
+    // take more: one with very many values that are small on the wire and large in memory (idl/README.md).
+    // The message's time stamp, its three ints and its global reference stay unchanged. Throws as
+    // SerializedSize.
     virtual bool Deserialize(std::span<const std::uint8_t> bytes, RabitMessage &message) const = 0;
 
     // True if the type, or a base of it, has @key members.

@@ -104,9 +104,10 @@ protected:
 class IncarnationSource
 {
 public:
-    // Returns an incarnation above `floor`. If there is a store, it must be safely stored before anything is
-    // sent that LinkOutput was given after this, so that no later incarnation of this node is below one that
-    // others have heard. Called for the first incarnation (floor 0) and when a peer knows a higher one.
+    // Returns an incarnation above `floor`. If there is a store, the incarnation must be safely stored before
+    // anything is sent that LinkOutput was given after this. So no later incarnation of this node is below
+    // one that others have heard. Called for the first incarnation (floor 0) and when a peer knows a higher
+    // one.
     virtual std::uint64_t Above(std::uint64_t floor) = 0;
 
 protected:

@@ -50,7 +50,7 @@ struct LinkPathState
 // gets one outcome. gateway/links/README.md has the protocol.
 //
 // It does no I/O and reads no clock. The driver hands in what happens and the time (LinkTime, never lower
-// than before), and is called back through LinkOutput, LocalQueues and IncarnationSource during these calls.
+// than before). It is called back through LinkOutput, LocalQueues and IncarnationSource during these calls.
 // The usual loop: hand in what has come, call Run, wait until NextDue() or until something comes.
 //
 // Threads: none of its own, and not thread-safe: the driver calls from one thread at a time. Enqueue sends

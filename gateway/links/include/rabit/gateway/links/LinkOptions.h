@@ -40,8 +40,8 @@ struct LinkSettings
     // 8, padding 1.
     std::size_t AirOverhead = 109;
     // An acknowledgement waits for more to acknowledge: this long, or five quarters of the round trip, but
-    // not longer than LongestAckDelay, unless the sender asks, or AckEvery parts or AckEveryBytes of payload
-    // have come.
+    // not longer than LongestAckDelay. It goes earlier if the sender asks, or if AckEvery parts or
+    // AckEveryBytes of payload have come.
     LinkTime AckDelay{std::chrono::milliseconds(2)};
     LinkTime LongestAckDelay{std::chrono::milliseconds(250)};
     std::size_t AckEvery = 16;
@@ -80,8 +80,8 @@ struct LinkSettings
     // Time between two new incarnations that this node takes because peers know of a higher one: each drops
     // all sessions, so one foolish peer must not ask for them one after the other.
     LinkTime RaiseGap{std::chrono::seconds(5)};
-    // New incarnations that this process may have to take (its storage was lost) before it must be assumed
-    // that another live node has the same name.
+    // After this process has taken this many new incarnations, another live node is assumed to have the same
+    // name. (A process takes one because its storage was lost.)
     std::uint32_t AlarmAfterRaises = 3;
 };
 
