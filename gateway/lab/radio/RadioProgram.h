@@ -33,7 +33,7 @@ struct RadioOptions
 // without Control, at the end of the standard input.
 //
 // The standard output begins with {"ready": true, "addresses": {name: MAC}, "realtime": bool}. The answers to
-// the lines of the standard input follow. Beside the commands of Console there is
+// the lines of the standard input follow. Beside the commands of Console there is:
 //
 //   lateness   {frames, mean_us, most_us, unwritten}: how much later than due frames were given to their
 //              receivers, and how many a device did not take; since the last call
