@@ -154,16 +154,18 @@ CommandLog::Answer CommandLog::Answered(const Uav::CommandAck &answer, double no
 
 void CommandLog::StartedAnew(const std::string &node, double lastHeardS, double nowS)
 {
+    _startedAnewS[node] = nowS;
     for (CommandStatus &command : _commands)
         if (command.node == node && command.progress == CommandProgress::PROGRESS_ACCEPTED &&
             command.changed_s <= lastHeardS)
             Advance(command, CommandProgress::PROGRESS_REPLACED, "the aircraft has started anew", nowS);
 }
 
-// A command is in doubt since the new life of its aircraft was heard, so a state that was posted later is of
-// that life.
+// A command is also in doubt if it expired while its aircraft was silent. An aircraft that has not restarted
+// may decline it then, and its answer may come later than its state.
 void CommandLog::Reported(const std::string &node, std::uint32_t lastCommand, double postedS, double nowS)
 {
+    const auto startedAnew = _startedAnewS.find(node);
     for (CommandStatus &command : _commands)
     {
         if (command.node != node || command.progress != CommandProgress::PROGRESS_IN_DOUBT ||
@@ -174,7 +176,7 @@ void CommandLog::Reported(const std::string &node, std::uint32_t lastCommand, do
             Advance(command, CommandProgress::PROGRESS_ACCEPTED, "", nowS);
             ++_tallies[node].Acknowledged;
         }
-        else
+        else if (startedAnew != _startedAnewS.end() && command.sent_s < startedAnew->second)
             Advance(command, CommandProgress::PROGRESS_REPLACED, "the aircraft has started anew", nowS);
     }
 }

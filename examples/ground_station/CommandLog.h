@@ -52,8 +52,8 @@ public:
     Answer Answered(const Uav::CommandAck &answer, double nowS);
 
     // Notes a MissionState that the aircraft posted at `postedS`, with the id of the last command that it
-    // obeyed. That ends the doubt about commands: the aircraft obeys the command, or has started anew without
-    // it.
+    // obeyed. That ends the doubt about a command that the aircraft obeys, or without which it has started
+    // anew (StartedAnew).
     void Reported(const std::string &node, std::uint32_t lastCommand, double postedS, double nowS);
 
     // The id of the command of number 1.
@@ -83,6 +83,7 @@ private:
     std::uint32_t _firstId;
     std::vector<CommandStatus> _commands;
     std::map<std::string, Tally> _tallies;
+    std::map<std::string, double> _startedAnewS;  // by node: when it was last told
     std::uint64_t _repeated = 0;
     std::uint64_t _wrongNode = 0;
     std::uint64_t _unknown = 0;

@@ -261,6 +261,7 @@ TEST(CommandLog, TheStateOfTheAircraftEndsTheDoubt)
     {
         log.OnWay(id, QueueOutcome::InDoubt, 5);
     }
+    log.StartedAnew("uav1", 4, 5);
     log.Reported("uav1", 2, 5, 6);
     EXPECT_EQ(log.Outstanding().size(), 3u) << "it may be a state of the former life";
     log.Reported("uav1", 2, 5.5, 6);
@@ -272,6 +273,19 @@ TEST(CommandLog, TheStateOfTheAircraftEndsTheDoubt)
     log.Answered(Ack(2, "uav1", CommandStage::COMMAND_DONE), 7);
     EXPECT_EQ(log.Commands()[1].progress, CommandProgress::PROGRESS_DONE);
     EXPECT_EQ(log.Of("uav1").Acknowledged, 1u);
+}
+
+// As one that expired while the aircraft was silent.
+TEST(CommandLog, TheStateOfAnAircraftThatHasNotRestartedLeavesTheAnswerToIt)
+{
+    CommandLog log;
+    log.Sent(To("uav1"), 1);
+    log.OnWay(1, QueueOutcome::InDoubt, 12);
+    log.Reported("uav1", 0, 20, 20.5);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_IN_DOUBT);
+    log.Answered(Ack(1, "uav1", CommandStage::COMMAND_DECLINED, "too low"), 21);
+    EXPECT_EQ(log.Commands()[0].progress, CommandProgress::PROGRESS_DECLINED);
+    EXPECT_EQ(log.Commands()[0].reason, "too low");
 }
 
 TEST(CommandLog, TheStateOfTheAircraftChangesNoCommandThatIsNotInDoubt)
