@@ -132,6 +132,20 @@ TEST_F(FleetValuesTest, WarnOfValuesOfAnotherClass)
               "another class");
 }
 
+TEST_F(FleetValuesTest, DoNotCallAMessageOfTheirClassOneOfAnotherClass)
+{
+    LogLines log;
+    Start();
+    Post("uav1/nose/Pose", 1);
+    const auto fleet = std::make_shared<Gateway::Fleet>();
+    ASSERT_TRUE(_workspace.AddPublishSubscribeMessage("Gateway/Fleet", fleet));
+    fleet->nodes.emplace_back().state = Gateway::NodeState::UP;
+    fleet->PostMessage();
+    Run(20s);
+    ASSERT_EQ(log.Lines.size(), 1u);
+    EXPECT_EQ(log.Lines[0].find("is of another class"), std::string::npos) << log.Lines[0];
+}
+
 TEST_F(FleetValuesTest, DoNotGuessAMessageWithAnotherName)
 {
     LogLines log;

@@ -169,7 +169,7 @@ private:
         }
         for (const MessageInfo &info : _manager.GetWorkspace().GetListOfMessages())
         {
-            if (EndsRight(info.Name))
+            if (EndsRight(info.Name) && info.Type != typeid(T))
             {
                 return "`" + info.Name + "` is of another class";
             }
