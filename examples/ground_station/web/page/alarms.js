@@ -46,8 +46,9 @@ export class Alarms {
   update() {
     const alarms = alarmsOf(this.model);
     const fresh = alarms.filter(({key}) => !this.known.has(key));
-    // While the connection is away it is not known which alarms are over.
-    if (this.model.live) this.known = new Set(alarms.map(({key}) => key));
+    const keys = alarms.map(({key}) => key);
+    // While the connection or the gateway is silent it is not known which alarms are over.
+    this.known = new Set(this.model.fleetFresh ? keys : [...this.known, ...keys]);
     if (fresh.length > 0) {
       this.sound();
       this.say(`Alarm: ${fresh.map(({node, text}) => `${node} ${text}`).join('. ')}`);
