@@ -1,4 +1,5 @@
-// What an operator has to act on now, in the operator's words. Problems of programs and networks are in a list of their own.
+// Alarms: an operator has to act on each of them now. They are in the operator's words. Problems of programs and networks are in a
+// list of their own.
 import {byId, element, keepList, setAttribute, setText} from './dom.js';
 import {ageWithUnit, fixed} from './format.js';
 import {batteryLevel} from './model.js';
@@ -26,7 +27,7 @@ export function alarmsOf(model) {
     const told = model.isFresh(one, 'health');
     if (told && batteryLevel(health.battery_percent) === 'alarm')
       add('battery', node, `battery ${fixed(health.battery_percent, 0)} %: it has to land soon`);
-    else if (told && health.wants_home) add('home', node, `flies home by itself: ${health.reason}`);
+    else if (told && health.wants_home) add('home', node, `flies home by itself${health.reason ? `: ${health.reason}` : ''}`);
     if (one.bad_position) add('position', node, `its position cannot be true: ${one.bad_position}`);
     if (one.without_orders) add('orders', node, 'started again, and waits for an order');
   }
@@ -51,7 +52,7 @@ export class Alarms {
     this.known = new Set(this.model.fleetFresh ? keys : [...this.known, ...keys]);
     if (fresh.length > 0) {
       this.sound();
-      this.say(`Alarm: ${fresh.map(({node, text}) => `${node} ${text}`).join('. ')}`);
+      this.say(`Alarm: ${fresh.map(({node, text}) => `${node} ${text}`.trim()).join('. ')}`);
     }
     byId('alarms-panel').hidden = alarms.length === 0;
     const count = `■ ${alarms.length} ${alarms.length === 1 ? 'alarm' : 'alarms'}`;
