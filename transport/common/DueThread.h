@@ -50,6 +50,11 @@ protected:
     void Start()
     {
         Prepare();
+        StartPrepared();
+    }
+    // As Start, after Prepare. Also while another thread is in Stop: it does not touch the thread itself.
+    void StartPrepared()
+    {
         {
             const std::lock_guard lock(_mutex);
             _started = true;

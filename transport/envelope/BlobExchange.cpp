@@ -29,16 +29,12 @@ void BlobExchange::Want(BlobKind kind, const Hash &hash, const Source &from, Tim
     auto found = _wanted.find(hash);
     if (found == _wanted.end())
     {
-        std::erase_if(_wanted,
-                      [&](auto &each)
-                      {
-                          const bool isOld = now - each.second.Named > Forgotten;
-                          if (isOld)
-                          {
-                              DropParts(each.second);
-                          }
-                          return isOld;
-                      });
+        DropIf(
+            [&](const Lack &each)
+            {
+                return now - each.Named > Forgotten ||
+                       (kind == BlobKind::Bulletin && each.Kind == kind && each.From.Number == from.Number);
+            });
         const auto alike = std::count_if(_wanted.begin(), _wanted.end(),
                                          [kind](const auto &each) { return each.second.Kind == kind; });
         if (static_cast<std::size_t>(alike) >= MostWanted[static_cast<std::size_t>(kind)])
@@ -73,6 +69,21 @@ void BlobExchange::Drop(const Hash &hash)
     {
         DropParts(found->second);
         _wanted.erase(found);
+    }
+}
+
+template <typename Is>
+void BlobExchange::DropIf(const Is &is)
+{
+    for (auto each = _wanted.begin(); each != _wanted.end();)
+    {
+        if (!is(std::as_const(each->second)))
+        {
+            ++each;
+            continue;
+        }
+        DropParts(each->second);
+        each = _wanted.erase(each);
     }
 }
 

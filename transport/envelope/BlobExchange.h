@@ -59,7 +59,7 @@ public:
     // A blob that nobody named for this time is wanted no longer.
     static constexpr std::chrono::seconds Forgotten{10};
     // Of each BlobKind.
-    static constexpr std::array<std::size_t, BlobKinds + 1> MostWanted{64, 2, 16};
+    static constexpr std::array<std::size_t, BlobKinds + 1> MostWanted{64, 16, 16};
     static constexpr std::size_t MostOffers = 8;  // epochs
     // Bytes of all incomplete blobs. If there are more, the largest one begins again.
     static constexpr std::size_t MostIncomplete = std::size_t{256} * 1024;
@@ -70,6 +70,7 @@ public:
     {
         SessionTag Tag = 0;
         Epoch In = 0;
+        Serial Number = 0;  // of its certificate, which a bulletin needs
     };
     struct Blob
     {
@@ -87,7 +88,8 @@ public:
     // Sets this session's own blob of that kind, in place of the former one.
     void SetOwn(BlobKind kind, const Hash &hash, std::shared_ptr<const std::vector<std::uint8_t>> bytes);
 
-    // The session names a blob that this node lacks.
+    // The session names a blob that this node lacks. Anybody can name a bulletin that does not exist, so
+    // each certificate has one: the newest that its sessions name.
     void Want(BlobKind kind, const Hash &hash, const Source &from, TimePoint now);
     bool IsWanted(const Hash &hash) const { return _wanted.contains(hash); }
     // The blob is there, or is of no use.
@@ -152,6 +154,8 @@ private:
     // This session's share of it.
     std::chrono::milliseconds ShareOf(std::chrono::milliseconds spread) const;
     static std::uint64_t LackingOf(const Lack &want);
+    template <typename Is>
+    void DropIf(const Is &is);
     void DropParts(Lack &want);
     void Keep(const BlobPart &part, const Source &from, TimePoint now);
     std::optional<Blob> Complete(const Hash &hash, TimePoint now);

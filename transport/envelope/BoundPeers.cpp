@@ -1,5 +1,6 @@
 #include "envelope/BoundPeers.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "envelope/Claim.h"
@@ -8,10 +9,16 @@
 namespace Rabit::Envelope
 {
 
-bool BoundPeers::Has(SessionTag session) const
+bool BoundPeers::Has(const Session &session) const
 {
+    const Serial number = session.Certificate().Content.Number;
     const std::lock_guard lock(_mutex);
-    return _sessions.contains(session);
+    return std::all_of(session.Headers().begin(), session.Headers().end(),
+                       [this, number](const RtpsHeader &header)
+                       {
+                           const auto found = _peers.find(Rtps::SenderOf(header));
+                           return found != _peers.end() && found->second->Number == number;
+                       });
 }
 
 bool BoundPeers::Bind(const Session &session, SessionTag tag, std::shared_ptr<const Permissions> list,
@@ -22,14 +29,21 @@ bool BoundPeers::Bind(const Session &session, SessionTag tag, std::shared_ptr<co
                                                                   .Name = certificate.Name,
                                                                   .Number = certificate.Number,
                                                                   .Role = certificate.Role,
-                                                                  .List = std::move(list)});
+                                                                  .List = std::move(list),
+                                                                  .HasEnded = false});
     const std::lock_guard lock(_mutex);
     if (_peers.size() + Claim::MostHeaders > Most)
     {
         std::erase_if(_peers, [&isGone](const auto &each) { return isGone(each.second->Session); });
-        std::erase_if(_sessions, isGone);
     }
-    if (_peers.size() + Claim::MostHeaders > Most)
+    const bool isTaken =
+        std::any_of(session.Headers().begin(), session.Headers().end(),
+                    [this, &peer](const RtpsHeader &header)
+                    {
+                        const auto found = _peers.find(Rtps::SenderOf(header));
+                        return found != _peers.end() && found->second->Number != peer->Number;
+                    });
+    if (isTaken || _peers.size() + Claim::MostHeaders > Most)
     {
         return false;
     }
@@ -37,7 +51,6 @@ bool BoundPeers::Bind(const Session &session, SessionTag tag, std::shared_ptr<co
     {
         _peers[Rtps::SenderOf(header)] = peer;
     }
-    _sessions.insert(tag);
     return true;
 }
 
@@ -45,28 +58,27 @@ std::shared_ptr<const BoundPeer> BoundPeers::Find(const Rtps::GuidPrefix &prefix
 {
     const std::lock_guard lock(_mutex);
     const auto found = _peers.find(prefix);
-    return found == _peers.end() ? nullptr : found->second;
+    return found == _peers.end() || found->second->HasEnded ? nullptr : found->second;
 }
 
-void BoundPeers::RemoveIf(const std::function<bool(const BoundPeer &)> &is)
+void BoundPeers::EndIf(const std::function<bool(const BoundPeer &)> &is)
 {
     const std::lock_guard lock(_mutex);
-    for (auto each = _peers.begin(); each != _peers.end();)
+    for (auto &[prefix, peer] : _peers)
     {
-        if (!is(*each->second))
+        if (!peer->HasEnded && is(*peer))
         {
-            ++each;
-            continue;
+            BoundPeer ended = *peer;
+            ended.HasEnded = true;
+            peer = std::make_shared<const BoundPeer>(std::move(ended));
         }
-        _sessions.erase(each->second->Session);
-        each = _peers.erase(each);
     }
 }
 
 std::size_t BoundPeers::Size() const
 {
     const std::lock_guard lock(_mutex);
-    return _peers.size() + _sessions.size();
+    return _peers.size();
 }
 
 }  // namespace Rabit::Envelope

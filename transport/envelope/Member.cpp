@@ -36,7 +36,7 @@ std::string EpochText(Epoch epoch)
 
 }  // namespace
 
-Member::Member(MemberKeys keys, Clocks clocks, VerifyingKey authority, AgreementKey agreement)
+Member::Member(MemberKeys &&keys, Clocks clocks, VerifyingKey authority, AgreementKey agreement)
     : _clocks(std::move(clocks)),
       _signing(keys.SigningKey),
       _agreementBytes(keys.AgreementKey),
@@ -51,7 +51,7 @@ Member::Member(MemberKeys keys, Clocks clocks, VerifyingKey authority, Agreement
     OPENSSL_cleanse(keys.AgreementKey.data(), keys.AgreementKey.size());
 }
 
-Member::Made Member::Make(MemberKeys keys, Clocks clocks)
+Member::Made Member::Make(MemberKeys &&keys, Clocks clocks)
 {
     auto authority = VerifyingKey::Of(keys.Authority);
     auto agreement = AgreementKey::Of(SecretKey(keys.AgreementKey));
@@ -218,9 +218,15 @@ std::string Member::Learn(std::vector<std::uint8_t> bulletin)
             const std::lock_guard lock(_mutex);
             _refused.Put(hash, true);
         }
+        if (!read)
+        {
+            // A member can send such ones again and again.
+            Note(Name(), "bulletins are refused that the authority of this fleet did not sign",
+                 _clocks.Steady());
+        }
         if (!isNewer)
         {
-            return read ? "" : "a bulletin was refused: the authority of this fleet did not sign it";
+            return "";
         }
         const std::string text = "the bulletin of " + EpochText(read->Epoch()) +
                                  " has no secret for this node: its certificate was revoked; make new keys";
@@ -268,13 +274,11 @@ void Member::Note(const std::string &entry, const std::string &text, TimePoint n
     _lasting.Note(entry, text, now);
 }
 
-void Member::NoteCertain(const std::string &entry, const std::string &text)
+bool Member::NoteCertain(const std::string &entry, const std::string &text)
 {
     const std::lock_guard lock(_mutex);
-    if (_certain.size() < MostCertain || _certain.contains(entry))
-    {
-        _certain[entry] = text;
-    }
+    return (_certain.size() < MostCertain || _certain.contains(entry)) &&
+           _certain.insert_or_assign(entry, text).second;
 }
 
 void Member::NoteCertificate(const Envelope::Certificate &certificate)

@@ -51,8 +51,8 @@ public:
         std::shared_ptr<Member> Of;
         std::string Error;
     };
-    // As MakeFleetMember.
-    static Made Make(MemberKeys keys, Clocks clocks);
+    // As MakeFleetMember. Overwrites the secrets in `keys`, once they are in the member.
+    static Made Make(MemberKeys &&keys, Clocks clocks);
 
     const std::string &Name() const override { return _certificate.Name; }
     std::vector<SettingsProblem> Problems() const override;
@@ -87,12 +87,13 @@ public:
     // Something goes wrong with that node or address: a row of Problems if it lasts.
     void Note(const std::string &entry, const std::string &text, TimePoint now);
     // A row from now on.
-    void NoteCertain(const std::string &entry, const std::string &text);
+    // Returns true if the entry had no such row.
+    bool NoteCertain(const std::string &entry, const std::string &text);
     // A certificate has proven itself.
     void NoteCertificate(const Envelope::Certificate &certificate);
 
 private:
-    Member(MemberKeys keys, Clocks clocks, VerifyingKey authority, AgreementKey agreement);
+    Member(MemberKeys &&keys, Clocks clocks, VerifyingKey authority, AgreementKey agreement);
 
     // These two return an error for people, or nothing. No other thread has the member yet.
     std::string TakeKeys();

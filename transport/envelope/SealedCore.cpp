@@ -73,13 +73,15 @@ void SealedCore::FollowEpochs()
     const auto newest = _member->Newest();
     _blobs.SetOwn(BlobKind::Bulletin, newest.Of, newest.Content);
     _sessions.EndRevoked(_epochs);
-    _peers.RemoveIf([this](const BoundPeer &peer) { return _epochs.IsRevoked(peer.Number); });
+    _peers.EndIf([this](const BoundPeer &peer) { return _epochs.IsRevoked(peer.Number); });
 }
 
 bool SealedCore::Seal(std::span<const std::uint8_t> message, const std::optional<Rtps::Place> &to,
                       OuterClass contents, std::vector<std::uint8_t> &sealed, TimePoint now)
 {
-    const SealFault fault = _sealing.Seal(message, to, contents, sealed);
+    // A member that announces another one's place must not keep back what tells whose it is.
+    const bool isForAll = !to || !AnnouncedPlaces(message).empty();
+    const SealFault fault = _sealing.Seal(message, isForAll ? std::nullopt : to, contents, sealed);
     if (fault != SealFault::None)
     {
         _member->Note(_member->Name(), std::string("a datagram was not sent: ") + TextOf(fault), now);
@@ -122,8 +124,6 @@ std::span<std::uint8_t> SealedCore::Open(std::span<std::uint8_t> datagram, const
     Listen(sender, outer.Tag, now);
     if (!IsReady(sender, {.Tag = outer.Tag, .In = outer.Epoch}, now))
     {
-        const std::string &name = sender.Certificate().Content.Name;
-        _member->Note(name, name + " is not listened to: its list of permissions does not come", now);
         return {};
     }
     TakePlaces(result.Message, sender, outer.Tag);
@@ -190,8 +190,11 @@ void SealedCore::Refused(const Opener::Result &result)
         return;
     }
     const std::string text = result.Claimant + " claims an identity that " + result.Holder + " has proven";
-    _member->NoteCertain(result.Claimant, text);
-    Log(text);
+    // A member can claim again and again.
+    if (_member->NoteCertain(result.Claimant, text))
+    {
+        Log(text);
+    }
 }
 
 void SealedCore::TakeClaim(const Opener::Result &result, const Outer &outer, std::size_t size, TimePoint now)
@@ -228,7 +231,8 @@ void SealedCore::TakeBlobs(std::span<const std::uint8_t> bytes, const Session &s
         return;
     }
     _isNew = true;
-    const BlobExchange::Source source{.Tag = outer.Tag, .In = outer.Epoch};
+    const BlobExchange::Source source{
+        .Tag = outer.Tag, .In = outer.Epoch, .Number = sender.Certificate().Content.Number};
     const bool isFresh = sender.IsFresh(now);
     if (!isFresh)
     {
@@ -253,7 +257,10 @@ void SealedCore::TakeBlobs(std::span<const std::uint8_t> bytes, const Session &s
     }
     if (blob->Kind == BlobKind::Bulletin)
     {
-        _arrived.push_back(std::move(blob->Bytes));
+        if (_arrived.size() < MostArrived)
+        {
+            _arrived.push_back(std::move(blob->Bytes));
+        }
     }
     else if (!_member->AddList(blob->Of, blob->Bytes))
     {
@@ -275,18 +282,25 @@ void SealedCore::TakeBlobs(std::span<const std::uint8_t> bytes, const Session &s
 // True if the session's list of permissions is known. Its GUID prefixes are bound to its certificate then.
 bool SealedCore::IsReady(const Session &session, const BlobExchange::Source &from, TimePoint now)
 {
-    if (_peers.Has(from.Tag))
+    if (_peers.Has(session))
     {
         return true;
     }
     const Hash &hash = session.Certificate().Content.Permissions;
     auto list = _member->ListOf(hash);
+    const std::string &name = session.Certificate().Content.Name;
     if (list)
     {
-        return _peers.Bind(session, from.Tag, std::move(list),
-                           [this](SessionTag tag) { return _sessions.Find(tag) == nullptr; });
+        const bool isBound = _peers.Bind(session, from.Tag, std::move(list),
+                                         [this](SessionTag tag) { return _sessions.Find(tag) == nullptr; });
+        if (!isBound)
+        {
+            _member->Note(name, name + " is not listened to: another node had its identity before", now);
+        }
+        return isBound;
     }
     _blobs.Want(BlobKind::Permissions, hash, from, now);
+    _member->Note(name, name + " is not listened to: its list of permissions does not come", now);
     _isNew = true;
     return false;
 }

@@ -38,6 +38,8 @@ public:
     static constexpr double Rate = 6000.0;
     static constexpr double Burst = 4000.0;
     static constexpr std::size_t MostLogs = 32;
+    // Bulletins that wait to be learned. Further ones are asked for again.
+    static constexpr std::size_t MostArrived = 2;
 
     // Null if there are no random bytes, or if OpenSSL fails.
     static std::unique_ptr<SealedCore> Make(std::shared_ptr<Member> member, std::vector<RtpsHeader> headers,

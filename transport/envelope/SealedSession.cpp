@@ -46,7 +46,7 @@ void SealedSession::Start(const RtpsHeader &vendor, const RtpsHeader &own, Calls
 {
     {
         const std::lock_guard lock(_mutex);
-        if (_core)
+        if (_core || IsStopped())
         {
             return;
         }
@@ -65,7 +65,8 @@ void SealedSession::Start(const RtpsHeader &vendor, const RtpsHeader &own, Calls
         }
     }
     _isStarted.store(true, std::memory_order_release);
-    DueThread::Start();
+    // A vendor's thread may send its first datagram while another one is in Stop.
+    StartPrepared();
 }
 
 void SealedSession::Stop()

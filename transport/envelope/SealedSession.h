@@ -53,7 +53,7 @@ public:
     // `vendor`: the RTPS header with which the vendor's datagrams of this session begin: it is known once the
     // participant has its GUID prefix, at the latest with its first datagram. `own`: the header of datagrams
     // of our own (cards), with the same prefix; it may equal the other one. The first call alone has an
-    // effect. Any thread.
+    // effect, and none during or after Stop. Any thread.
     void Start(const RtpsHeader &vendor, const RtpsHeader &own, Calls calls);
     bool IsStarted() const { return _isStarted.load(std::memory_order_acquire); }
     // When it returns, no function of Calls is running, and none will be called. Seal and Open go on. Any

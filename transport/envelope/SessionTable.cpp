@@ -1,7 +1,6 @@
 #include "envelope/SessionTable.h"
 
 #include <algorithm>
-#include <iterator>
 #include <utility>
 
 #include "guard/RtpsMessage.h"
@@ -38,11 +37,11 @@ SessionTable::Result SessionTable::Take(const Facts &facts, TimePoint now)
         return {.Verdict = ClaimVerdict::TagTaken, .Holder = _name};
     }
     // A proof displaces a mere claim.
-    if (known != nullptr && !isSame && (Holds(*known, now) || !facts.LiveAt))
+    if (known != nullptr && !isSame && (known->IsProven() || !facts.LiveAt))
     {
         return {.Verdict = ClaimVerdict::TagTaken, .Holder = known->Certificate().Content.Name};
     }
-    if (const std::string *const holder = HolderOf(facts, now))
+    if (const std::string *const holder = HolderOf(facts))
     {
         return {.Verdict = ClaimVerdict::PrefixTaken, .Holder = *holder};
     }
@@ -50,10 +49,6 @@ SessionTable::Result SessionTable::Take(const Facts &facts, TimePoint now)
     {
         Displace(_sessions.find(tag));
         known = nullptr;
-    }
-    if (facts.LiveAt)
-    {
-        EndSilentHoldersOf(facts);
     }
     if (!MakeRoom(facts, known, now))
     {
@@ -91,7 +86,9 @@ bool SessionTable::BindsAnyOf(const Session &session, const Facts &facts)
                        { return session.Binds(Rtps::SenderOf(header)); });
 }
 
-const std::string *SessionTable::HolderOf(const Facts &facts, TimePoint now) const
+// However long the holder was silent: the vendor may remember its writers, and would take what another node
+// sends in their names.
+const std::string *SessionTable::HolderOf(const Facts &facts) const
 {
     const bool isOwn = std::any_of(facts.Headers.begin(), facts.Headers.end(),
                                    [this](const RtpsHeader &header)
@@ -105,7 +102,7 @@ const std::string *SessionTable::HolderOf(const Facts &facts, TimePoint now) con
     }
     for (const auto &[tag, session] : _sessions)
     {
-        if (Holds(*session, now) && session->Sender().Certificate != facts.Sender.Certificate &&
+        if (session->IsProven() && session->Sender().Certificate != facts.Sender.Certificate &&
             BindsAnyOf(*session, facts))
         {
             return &session->Certificate().Content.Name;
@@ -114,24 +111,10 @@ const std::string *SessionTable::HolderOf(const Facts &facts, TimePoint now) con
     return nullptr;
 }
 
-// HolderOf has refused claims of prefixes that are held: those that are left are silent. A session that was
-// silent must not speak for a prefix that is another's now.
-void SessionTable::EndSilentHoldersOf(const Facts &facts)
-{
-    for (auto each = _sessions.begin(); each != _sessions.end();)
-    {
-        const Session &session = *each->second;
-        const bool isSilentHolder = session.IsProven() &&
-                                    session.Sender().Certificate != facts.Sender.Certificate &&
-                                    BindsAnyOf(session, facts);
-        each = isSilentHolder ? Displace(each) : std::next(each);
-    }
-}
-
-SessionTable::Map::iterator SessionTable::Displace(Map::iterator which)
+void SessionTable::Displace(Map::iterator which)
 {
     _displaced.Put(which->second->Sender(), which->second->Window().Highest());
-    return _sessions.erase(which);
+    _sessions.erase(which);
 }
 
 bool SessionTable::WasTaken(const End &sender, std::uint64_t number) const

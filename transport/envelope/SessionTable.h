@@ -30,10 +30,9 @@ enum class ClaimVerdict : std::uint8_t
 };
 
 // The sessions that may speak on one path. A session gets a place by a claim that was verified, and is proven
-// by a claim that answers this node's nonce. The first proven claim of a GUID prefix holds, until its session
-// was silent for HoldsFor and another certificate proves that it has the prefix. Bounded. Pointers
-// to sessions hold until the next Take or End. Time is passed in. Not thread-safe: the lock of opening guards
-// the table and its sessions.
+// by a claim that answers this node's nonce. The first proven claim of a GUID prefix holds as long as its
+// session has a place. Bounded. Pointers to sessions hold until the next Take or End. Time is passed in. Not
+// thread-safe: the lock of opening guards the table and its sessions.
 class SessionTable
 {
 public:
@@ -43,8 +42,8 @@ public:
     // Recorded claims make such sessions. They displace each other, never a proven one.
     static constexpr std::size_t MostUnprovenOfOne = 4;
     static constexpr std::size_t Most = 2048;
-    // A proven session that was silent for longer makes room for one that is live. Longer than a battery or a
-    // flight behind a hill, since its prefix would be another's when it comes back.
+    // If the table is full, a proven session that was silent for longer makes room for one that is live.
+    // Longer than a battery or a flight behind a hill.
     static constexpr std::chrono::hours HoldsFor{1};
     // Sessions that made room for others, whose highest numbers are kept: recorded claims of them are
     // refused.
@@ -95,11 +94,10 @@ private:
 
     static bool Holds(const Session &session, TimePoint now);
     static bool BindsAnyOf(const Session &session, const Facts &facts);
-    const std::string *HolderOf(const Facts &facts, TimePoint now) const;
-    void EndSilentHoldersOf(const Facts &facts);
+    const std::string *HolderOf(const Facts &facts) const;
     bool MakeRoom(const Facts &facts, const Session *known, TimePoint now);
-    // Ends a session and keeps its highest number. Returns the next one.
-    Map::iterator Displace(Map::iterator which);
+    // Ends a session and keeps its highest number.
+    void Displace(Map::iterator which);
     template <typename Fits>
     Map::iterator LongestSilent(const Fits &fits);
 

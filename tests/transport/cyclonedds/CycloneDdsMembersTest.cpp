@@ -207,6 +207,11 @@ TEST_F(CycloneDdsMembersTest, AConfigurationWithASocketForEachParticipantIsRefus
     ExpectRefusalWith("<Compatibility><ManySocketsMode>many</ManySocketsMode></Compatibility>");
 }
 
+TEST_F(CycloneDdsMembersTest, AConfigurationWithSeveralReceivingThreadsIsRefused)
+{
+    ExpectRefusalWith("<Internal><MultipleReceiveThreads>true</MultipleReceiveThreads></Internal>");
+}
+
 TEST_F(CycloneDdsMembersTest, AConfigurationThatShowsTheVendorsStateIsRefused)
 {
     ExpectRefusalWith("<Internal><MonitorPort>0</MonitorPort></Internal>");

@@ -227,10 +227,23 @@ TEST_F(BlobExchanges, WantABoundedNumber)
     for (std::uint8_t number = 0; number < 200; ++number)
     {
         B.Want(BlobKind::Permissions, {number, 1}, {.Tag = 7, .In = 4}, Now);
-        B.Want(BlobKind::Bulletin, {number, 2}, {.Tag = 7, .In = 4}, Now);
+        B.Want(BlobKind::Bulletin, {number, 2}, {.Tag = 7, .In = 4, .Number = number}, Now);
         B.Want(BlobKind::Certificate, {number, 3}, {.Tag = 7, .In = 4}, Now);
     }
-    EXPECT_EQ(B.Wanted(), 64u + 2u + 16u);
+    EXPECT_EQ(B.Wanted(), 64u + 16u + 16u);
+}
+
+TEST_F(BlobExchanges, BringABulletinWhateverBulletinsAnotherMemberInvents)
+{
+    A.SetOwn(BlobKind::Bulletin, Of, std::make_shared<const Bytes>(Content));
+    for (std::uint8_t number = 0; number < 200; ++number)
+    {
+        B.Want(BlobKind::Bulletin, {number, 2}, {.Tag = 3, .In = 4, .Number = 3}, Now);
+    }
+    EXPECT_EQ(B.Wanted(), 1u);
+    B.Want(BlobKind::Bulletin, Of, {.Tag = 1, .In = 4, .Number = 1}, Now);
+    Run(500ms);
+    EXPECT_EQ(Came.count(1), 1u);
 }
 
 TEST_F(BlobExchanges, OfferABulletinInTheFormerEpochWhileItIsHeard)

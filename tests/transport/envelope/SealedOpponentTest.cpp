@@ -113,6 +113,25 @@ TEST_F(SealedMember, CannotClaimAnothersParticipant)
     EXPECT_EQ(Fleet->Nodes[0]->Core->PeerOf(Fleet->PrefixOfNode(1))->Name, "uav2");
 }
 
+TEST_F(SealedMember, ThatClaimsAnothersParticipantAgainAndAgainIsLoggedOnce)
+{
+    Self self = Forger({.Session = SessionOf(9, 9), .Certificate = EndOf(*Fleet, 2).Certificate},
+                       {Fleet->Nodes[1]->Vendor});
+    Sealer sealer(self, Epochs);
+    for (int i = 0; i < 20; ++i)
+    {
+        Fleet->Inject(
+            0, SealNodes::Node::Taken([&](auto out) { return sealer.SealClaim({1}, {}, true, out); }), 2);
+        Fleet->Run(100ms);
+    }
+    EXPECT_EQ(Fleet->Nodes[0]->Core->Opened(OpenFault::RefusedClaim), 20u);
+    const auto &logs = Fleet->Nodes[0]->Logs;
+    EXPECT_EQ(std::count_if(logs.begin(), logs.end(),
+                            [](const std::string &line)
+                            { return line.find("claims an identity") != std::string::npos; }),
+              1);
+}
+
 TEST_F(SealedMember, CannotNameAnotherSource)
 {
     // In its own session, which the others have proven.
@@ -292,6 +311,19 @@ TEST(SealedStrangers, AProgramWithoutKeysIsNotHeardAndIsARow)
     EXPECT_EQ(fleet->Nodes[0]->Keys->Problems().size(), 1u);
 }
 
+TEST(SealedBulletins, ThatTheAuthorityDidNotSignAreARowAndNoLines)
+{
+    const auto fleet = FleetOf(2);
+    Bytes bulletin = fleet->BulletinOf(2, {1, 2});
+    for (int i = 0; i < 15; ++i)
+    {
+        ++bulletin.back();
+        EXPECT_EQ(fleet->Nodes[0]->Keys->Learn(bulletin), "");
+        fleet->Run(1s);
+    }
+    EXPECT_TRUE(HasRow(*fleet, 0, "uav1", "did not sign"));
+}
+
 // Datagrams to an address and port of one session alone are sealed for that session.
 class SealedPlaces : public testing::Test
 {
@@ -333,6 +365,17 @@ TEST_F(SealedPlaces, OfOneSessionAreSealedForItAlone)
     EXPECT_FALSE(Fleet->Inject(1, Last, 0).empty());
     EXPECT_TRUE(Fleet->Inject(2, Last, 0).empty());
     EXPECT_EQ(AddedTo(7411), 71u);
+}
+
+TEST_F(SealedPlaces, GetAnnouncementsThatAllCanOpen)
+{
+    // The third node announces the place of the second one.
+    Announce(2, 7410);
+    Bytes message = RtpsBytes::ParticipantMessage(Fleet->PrefixOfNode(0), 7414);
+    std::copy(Fleet->Nodes[0]->Vendor.begin(), Fleet->Nodes[0]->Vendor.end(), message.begin());
+    const Rabit::Rtps::Place place{.Host = RtpsBytes::SenderHost, .Port = 7410};
+    ASSERT_TRUE(Fleet->Nodes[0]->Core->Seal(message, place, OuterClass::Traffic, Last, Fleet->Now));
+    EXPECT_FALSE(Fleet->Inject(1, Last, 0).empty());
 }
 
 TEST_F(SealedPlaces, OfTwoNodesAreSealedForAll)

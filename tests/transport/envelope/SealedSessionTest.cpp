@@ -6,6 +6,7 @@
 #include <atomic>
 #include <memory>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "../../Eventually.h"
@@ -103,6 +104,13 @@ TEST_F(SealedSessions, SealAndOpenNothingBeforeTheStart)
     EXPECT_FALSE(A.NameOf(PrefixOfNumber(2)).has_value());
 }
 
+TEST_F(SealedSessions, DoNotStartOnceStopped)
+{
+    A.Stop();
+    Start(A, B, 1, SentByA);
+    EXPECT_FALSE(A.IsStarted());
+}
+
 TEST_F(SealedSessions, SendNothingOnceStopped)
 {
     Start(A, B, 1, SentByA);
@@ -112,7 +120,17 @@ TEST_F(SealedSessions, SendNothingOnceStopped)
     // The claims of B ask A, which opens them all the same.
     Start(B, A, 2, SentByB);
     EXPECT_TRUE(RabitTest::Eventually([&] { return SentByB > 3; }));
-    EXPECT_EQ(SentByA, before);
+    EXPECT_EQ(SentByA.load(), before);
+}
+
+// ThreadSanitizer sees what both would change.
+TEST_F(SealedSessions, MayStartOnOneThreadWhileAnotherStopsThem)
+{
+    std::thread vendor([this] { Start(A, B, 1, SentByA); });
+    A.Stop();
+    vendor.join();
+    Bytes sealed;
+    EXPECT_TRUE(A.Seal(MessageOf(HeaderOf(1)), std::nullopt, OuterClass::Traffic, sealed));
 }
 
 TEST_F(SealedSessions, SealAtMostTheBytesThatTheySay)

@@ -75,7 +75,7 @@ void AddPeers(const TransportSettings &settings, std::ostream &xml)
     {
         const PeerAddress address = ParsePeer(peer);
         const auto ports = address.Port != 0 ? std::vector<std::uint16_t>{address.Port}
-                                             : UsualDiscoveryPorts(settings.Domain);
+                                             : UsualDiscoveryPorts(settings.Domain, ParticipantsPerPeer);
         for (const std::uint16_t port : ports)
         {
             xml << "<Peer address=\"" << address.Host << ":" << port << "\"/>";
@@ -98,10 +98,10 @@ std::string Read(const std::string &path)
 
 }  // namespace
 
-std::vector<std::uint16_t> UsualDiscoveryPorts(int domain)
+std::vector<std::uint16_t> UsualDiscoveryPorts(int domain, int count)
 {
     std::vector<std::uint16_t> ports;
-    for (int i = 0; i < ParticipantsPerPeer; ++i)
+    for (int i = 0; i < count; ++i)
     {
         ports.push_back(static_cast<std::uint16_t>(DiscoveryPort(domain, i)));
     }

@@ -17,8 +17,8 @@ namespace Rabit::Cyclone
 // datagram. Throws TransportError if the file cannot be read.
 std::string MakeDomainConfig(const TransportSettings &settings, std::size_t added);
 
-// The ports at which the participants of one host and domain are looked for if a peer has no port.
-std::vector<std::uint16_t> UsualDiscoveryPorts(int domain);
+// The ports at which the first `count` participants of one host and domain take discovery data.
+std::vector<std::uint16_t> UsualDiscoveryPorts(int domain, int count);
 
 // True if a configuration file is given and names interfaces. They then replace our list: the vendor would
 // join the two and refuse an interface that is in both. Throws TransportError if the file cannot be read.

@@ -32,6 +32,8 @@ namespace
 
 // Numbers from here on are of no domain of the network.
 constexpr dds_domainid_t FirstOther = 1000;
+// A host that is not listed is answered at the ports of this many participants.
+constexpr int PortsOfStranger = 4;
 
 // True if a datagram sent now carries samples.
 bool IsOfSamplesSent(std::span<const std::uint8_t> head)
@@ -121,47 +123,45 @@ void VendorDomain::Send(const RabitCycloneRoute &route, RabitCycloneTo to,
     }
 }
 
-std::vector<RabitCycloneRoute> VendorDomain::WaysOfSealed(const std::optional<Rtps::Place> &to) const
+std::vector<RabitCycloneRoute> VendorDomain::WaysOfSealed()
 {
     std::vector<RabitCycloneRoute> routes;
-    const auto add = [&](const Rtps::Place &place)
+    RabitCycloneAnnouncedRoutes(
+        _watch,
+        [](const RabitCycloneRoute *route, void *argument)
+        { static_cast<std::vector<RabitCycloneRoute> *>(argument)->push_back(*route); },
+        &routes);
+    // As MaySend.
+    std::erase_if(routes,
+                  [this](const RabitCycloneRoute &route)
+                  {
+                      const auto address = std::to_array(route.address);
+                      return _multicast && !IsGroup(address) && !_direct.MayGo(address);
+                  });
+    std::vector<Rtps::HostAddress> strangers;
     {
-        const RabitCyclonePlace there = ToCyclonePlace(place);
-        routes.push_back(RabitCycloneRouteTo(_watch, &there));
-    };
-    const bool isAnnounced = to && _accounts->IsAnnounced(*to);
-    if (isAnnounced)
-    {
-        add(*to);
+        const std::lock_guard lock(_cardMutex);
+        strangers = _strangers.Current(std::chrono::steady_clock::now());
     }
-    else if (to && !_multicast)
+    for (const Rtps::HostAddress &host : strangers)
     {
         for (const std::uint16_t port : _usualPorts)
         {
-            add({.Host = to->Host, .Port = port});
+            const RabitCyclonePlace place = ToCyclonePlace({.Host = host, .Port = port});
+            if (std::none_of(routes.begin(), routes.end(),
+                             [&place](const RabitCycloneRoute &route)
+                             { return IsSame(EndOf(route), place); }))
+            {
+                routes.push_back(RabitCycloneRouteTo(_watch, &place));
+            }
         }
-    }
-    else
-    {
-        RabitCycloneAnnouncedRoutes(
-            _watch,
-            [](const RabitCycloneRoute *route, void *argument)
-            { static_cast<std::vector<RabitCycloneRoute> *>(argument)->push_back(*route); },
-            &routes);
-        // As MaySend.
-        std::erase_if(routes,
-                      [this](const RabitCycloneRoute &route)
-                      {
-                          const auto address = std::to_array(route.address);
-                          return _multicast && !IsGroup(address) && !_direct.MayGo(address);
-                      });
     }
     return routes;
 }
 
-void VendorDomain::SendSealed(const std::optional<Rtps::Place> &to, std::span<const std::uint8_t> sealed)
+void VendorDomain::SendSealed(std::span<const std::uint8_t> sealed)
 {
-    for (const RabitCycloneRoute &route : WaysOfSealed(to))
+    for (const RabitCycloneRoute &route : WaysOfSealed())
     {
         const RabitCyclonePlace end = EndOf(route);
         if (MayGo(this, &end, sealed.size(), false) &&
@@ -450,9 +450,15 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     const Rtps::HostAddress &host = source.Host;
     if (domain._seal != nullptr)
     {
+        const bool isWakeUp = size == 1;
         size = domain._seal->Open({datagram, size}, source);
         if (size == 0)
         {
+            if (!domain._multicast && from != nullptr && !isWakeUp)
+            {
+                const std::lock_guard lock(domain._cardMutex);
+                domain._strangers.Heard(host, std::chrono::steady_clock::now());
+            }
             return domain.JoinDelivered({datagram, capacity}, 0);
         }
     }
@@ -520,7 +526,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       _cardRoutes(settings.AnnouncementPeriod),
       _goodbyes(std::move(goodbyes)),
       _accounts(std::move(accounts)),
-      _usualPorts(UsualDiscoveryPorts(settings.Domain)),
+      _usualPorts(UsualDiscoveryPorts(settings.Domain, PortsOfStranger)),
       // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Vendor::CycloneDds, _goodbyes,
              _accounts),
@@ -635,7 +641,7 @@ std::unique_ptr<SealedTraffic> VendorDomain::MakeSeal(const TransportSettings &s
     return std::make_unique<SealedTraffic>(
         settings.Member,
         Envelope::SealedSession::Calls{
-            .Send = [this](const auto &to, auto sealed) { SendSealed(to, sealed); },
+            .Send = [this](const auto & /*to*/, auto sealed) { SendSealed(sealed); },
             .Log = [log = _log](const std::string &line) { log->Line(line); }});
 }
 

@@ -19,6 +19,7 @@
 #include "RouteOrder.h"
 #include "SealedTraffic.h"
 #include "common/HardwareAddresses.h"
+#include "common/HeardStrangers.h"
 #include "common/KeyExchangeThread.h"
 #include "common/ProcessNumber.h"
 #include "common/RecentGoodbyes.h"
@@ -117,12 +118,11 @@ private:
     void Send(const RabitCycloneRoute &route, RabitCycloneTo to, std::span<const std::uint8_t> datagram);
     // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram);
-    // The ways by which the participant is announced, or those to one place. A place that no participant has
-    // announced is a socket of the vendor's, which receives nothing: its host is reached at the usual ports,
-    // or by the group.
-    std::vector<RabitCycloneRoute> WaysOfSealed(const std::optional<Rtps::Place> &to) const;
+    // The ways by which the participant is announced, and without multicast those to the usual ports of
+    // strangers: the vendor's sockets that send receive nothing.
+    std::vector<RabitCycloneRoute> WaysOfSealed();
     // Runs on the seal's thread.
-    void SendSealed(const std::optional<Rtps::Place> &to, std::span<const std::uint8_t> sealed);
+    void SendSealed(std::span<const std::uint8_t> sealed);
     // Runs on the meeting's thread.
     void DeliverCard(const Rtps::HostAddress &from, std::span<std::uint8_t> datagram);
     // Puts messages from cards before a received datagram.
@@ -146,7 +146,8 @@ private:
     DirectAnnouncements _direct;
     const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes;
     const std::shared_ptr<Rtps::Ledger> _accounts;
-    const std::vector<std::uint16_t> _usualPorts;  // UsualDiscoveryPorts
+    const std::vector<std::uint16_t> _usualPorts;  // the first ones of UsualDiscoveryPorts
+    Rtps::HeardStrangers _strangers;               // guarded by _cardMutex
     Rtps::AuthenticationThread _authentication;
     Rtps::RtpsGuard _guard;
     HardwareAddresses _addresses;

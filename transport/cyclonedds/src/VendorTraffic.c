@@ -511,6 +511,11 @@ const char *RabitCyclonePassesBy(const void *watch)
     {
         return "ManySocketsMode is not single";
     }
+    /* A thread of one socket alone may wait in the vendor's own read function, before it is replaced. */
+    if (config->multiple_recv_threads != DDSI_BOOLDEF_FALSE)
+    {
+        return "it has MultipleReceiveThreads";
+    }
     if (config->monitor_port >= 0)
     {
         return "it has a MonitorPort";

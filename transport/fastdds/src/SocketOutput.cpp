@@ -178,30 +178,23 @@ bool SocketOutput::SealFor(const rtps::Locator_t &destination, std::span<const s
     return _settings.Seal->Seal(datagram, place, contents, sealed);
 }
 
-void SocketOutput::HeardStranger(const HostAddress &host, TimePoint now)
-{
-    if (_strangers.size() >= MostStrangers && !_strangers.contains(host))
-    {
-        _strangers.erase(std::min_element(_strangers.begin(), _strangers.end(),
-                                          [](const auto &a, const auto &b) { return a.second < b.second; }));
-    }
-    _strangers.insert_or_assign(host, now);
-}
-
 void SocketOutput::SendSealed(std::span<const std::uint8_t> sealed, TimePoint now, const TimePoint &timeout)
 {
-    for (const Route &route : RoutesTo(std::nullopt, now))
+    const std::vector<Route> routes = RoutesTo(std::nullopt, now);
+    for (const Route &route : routes)
     {
         _settings.OnSent(false, 1, sealed.size());
         SendOne(route, sealed, timeout);
     }
-    std::erase_if(_strangers, [now](const auto &entry) { return now - entry.second > StrangersAnswered; });
-    for (const auto &[host, heard] : _strangers)
+    for (const HostAddress &host : _strangers.Current(now))
     {
         for (const std::uint16_t port : _settings.DiscoveryPorts)
         {
             const Place place{.Host = host, .Port = port};
-            if (_guard.MayGo(place, sealed.size(), Ledger::Cargo::Discovery, _addresses, now))
+            const bool isSent =
+                std::any_of(routes.begin(), routes.end(),
+                            [&place](const Route &route) { return PlaceOf(route.second) == place; });
+            if (!isSent && _guard.MayGo(place, sealed.size(), Ledger::Cargo::Discovery, _addresses, now))
             {
                 SendSealedTo(place, sealed, timeout);
             }

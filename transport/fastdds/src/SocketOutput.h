@@ -14,6 +14,7 @@
 #include "ReplySocket.h"
 #include "Vendor.h"
 #include "common/HardwareAddresses.h"
+#include "common/HeardStrangers.h"
 #include "common/RecentNumbers.h"
 #include "common/Rtps.h"
 #include "guard/RtpsGuard.h"
@@ -74,7 +75,7 @@ public:
               std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout, Lock &lock);
     // A datagram came from that host, and was nothing for guard and vendor. For sessions whose samples do not
     // go to a group.
-    void HeardStranger(const Rtps::HostAddress &host, TimePoint now);
+    void HeardStranger(const Rtps::HostAddress &host, TimePoint now) { _strangers.Heard(host, now); }
     // Sends a sealed datagram to all as it is, and counts it: by the routes of card messages, and to the
     // strangers that were heard. The sockets of nodes that send do not receive, so it goes to the usual ports
     // of a stranger's host, as far as strangers are sent something.
@@ -83,10 +84,6 @@ public:
     std::size_t MostAdded() const { return _settings.Seal != nullptr ? _settings.Seal->MostAdded() : 0; }
 
 private:
-    // Hosts that are answered, and for how long after their last datagram: nodes repeat what introduces them.
-    static constexpr std::size_t MostStrangers = 16;
-    static constexpr std::chrono::seconds StrangersAnswered{3};
-
     bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const;
     std::uint32_t NumberOf(const rtps::Locator_t &destination);
     bool MayGo(const rtps::Locator_t &destination, std::size_t bytes, bool samples, TimePoint now);
@@ -108,7 +105,7 @@ private:
     RecentNumbers<rtps::Locator_t> _destinations;
     std::map<rtps::SenderResource *, std::uint32_t> _sockets;
     rtps::SendResourceList _noSockets;
-    std::map<Rtps::HostAddress, TimePoint> _strangers;  // when they were heard last
+    Rtps::HeardStrangers _strangers;
     ReplySocket _reply;
     Destinations _allowed;  // of the datagram to send
 };
