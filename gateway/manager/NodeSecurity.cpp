@@ -3,6 +3,7 @@
 #include <rabit/base/UtcText.h>
 
 #include <ctime>
+#include <filesystem>
 #include <utility>
 
 #include "keys/KeysError.h"
@@ -166,6 +167,12 @@ std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::s
     catch (const Keys::KeysError &error)
     {
         throw TransportError(error.what(), "security");
+    }
+    catch (const std::filesystem::filesystem_error &error)
+    {
+        throw TransportError(
+            "the folder of keys " + config.Security->Keys + " cannot be read: " + error.code().message(),
+            "security");
     }
 }
 

@@ -116,6 +116,13 @@ TEST_F(NodeSecurity, ThatThereAreNoKeysIsSaidWithFileAndLine)
     EXPECT_THAT(WhyNot(), HasSubstr("uav1.yaml:5: there is no folder of keys"));
 }
 
+TEST_F(NodeSecurity, AFolderThatTheSystemDoesNotShowIsSaidWithFileAndLine)
+{
+    // No file system has such a name. A folder of another user would fail for others than root alone.
+    Config.Security->Keys = Root + "/" + std::string(300, 'x');
+    EXPECT_THAT(WhyNot(), HasSubstr("uav1.yaml:5: the folder of keys "));
+}
+
 TEST_F(NodeSecurity, AConfigurationThatNeedsMoreThanThePermissionsIsRefused)
 {
     Make();
