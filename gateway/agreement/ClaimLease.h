@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/base/Backoff.h>
+
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -42,7 +44,8 @@ public:
     void Pause() { _renewAt.reset(); }
     // When to renew; empty: not at all.
     std::optional<Duration> RenewAt() const { return _renewAt; }
-    // Returns a renewal for all voters. The next one is due sooner if half of the lease has passed.
+    // Returns a renewal for all voters. The next one is due sooner if half of the lease has passed. If no
+    // majority answers for a lease, the intervals double, up to a lease.
     ClaimRequest Renew(Duration now);
     // Returns a request for orders to a voter whose book is known. It renews the lease, too.
     ClaimRequest OrdersTo(std::string_view voter, Duration now);
@@ -68,10 +71,13 @@ private:
     };
 
     ClaimRequest NewRequest(Duration now);
+    // Less than half of a lease is left of what a majority acknowledged.
+    bool IsLate(Duration now) const;
     Duration OfMajority(std::vector<Duration> ends) const;
 
     const AgreementSettings &_settings;
     const std::uint64_t _group;
+    Backoff _hasty;  // intervals while it is late
     std::uint32_t _session = 1;
     std::uint32_t _renewal = 0;
     std::uint32_t _number = 0;

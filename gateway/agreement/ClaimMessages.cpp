@@ -2,9 +2,9 @@
 
 #include <rabit/base/LittleEndian.h>
 
-#include <string_view>
 #include <utility>
 
+#include "agreement/AgreementBytes.h"
 #include "agreement/AgreementSettings.h"
 
 namespace Rabit
@@ -15,69 +15,6 @@ namespace
 constexpr std::uint8_t RequestByte = 1;
 constexpr std::uint8_t ReplyByte = 2;
 constexpr std::size_t LongestNode = 200;
-
-void PutName(std::string_view name, std::vector<std::uint8_t> &bytes)
-{
-    bytes.push_back(static_cast<std::uint8_t>(name.size()));
-    bytes.insert(bytes.end(), name.begin(), name.end());
-}
-
-// Reads untrusted bytes, never beyond the end. After a missing value IsGood is false, and all further values
-// are zero or empty.
-class ClaimBytes
-{
-public:
-    explicit ClaimBytes(std::span<const std::uint8_t> left) : _left(left) {}
-
-    template <typename Number>
-    Number Take()
-    {
-        return LittleEndian::Read<Number>(Bytes(sizeof(Number)));
-    }
-    std::string Name(std::size_t longest)
-    {
-        const std::size_t size = Take<std::uint8_t>();
-        _good = _good && size <= longest;
-        const std::span<const std::uint8_t> bytes = Bytes(_good ? size : 0);
-        return {bytes.begin(), bytes.end()};
-    }
-    std::string ClaimName()
-    {
-        std::string name = Name(AgreementSettings::LongestName);
-        _good = _good && !name.empty();
-        return name;
-    }
-    template <typename Kind>
-    Kind TakeKind(Kind last)
-    {
-        const std::uint8_t kind = Take<std::uint8_t>();
-        _good = _good && kind <= static_cast<std::uint8_t>(last);
-        return _good ? static_cast<Kind>(kind) : Kind{};
-    }
-    std::size_t Count()
-    {
-        const std::size_t count = Take<std::uint8_t>();
-        _good = _good && count <= ClaimRequest::MostOrders;
-        return _good ? count : 0;
-    }
-    bool IsAtEnd() const { return _good && _left.empty(); }
-
-private:
-    std::span<const std::uint8_t> Bytes(std::size_t size)
-    {
-        if (!_good || size > _left.size())
-        {
-            _good = false;
-            return {};
-        }
-        const std::span<const std::uint8_t> bytes = _left.first(size);
-        _left = _left.subspan(size);
-        return bytes;
-    }
-
-    std::span<const std::uint8_t> _left;
-    bool _good = true;
-};
 
 }  // namespace
 
@@ -126,7 +63,7 @@ std::vector<std::uint8_t> EncodeClaimReply(const ClaimReply &reply)
 
 std::optional<ClaimRequest> DecodeClaimRequest(std::span<const std::uint8_t> bytes)
 {
-    ClaimBytes from(bytes);
+    AgreementBytes from(bytes);
     if (from.Take<std::uint8_t>() != RequestByte)
     {
         return std::nullopt;
@@ -138,19 +75,19 @@ std::optional<ClaimRequest> DecodeClaimRequest(std::span<const std::uint8_t> byt
     request.Renewal = from.Take<std::uint32_t>();
     request.Book = from.Take<std::uint64_t>();
     request.Number = from.Take<std::uint32_t>();
-    request.Orders.resize(from.Count());
+    request.Orders.resize(from.Count(ClaimRequest::MostOrders));
     for (ClaimOrder &order : request.Orders)
     {
         order.What = from.TakeKind(ClaimOrder::Kind::Release);
         order.Fence = from.Take<std::uint64_t>();
-        order.Name = from.ClaimName();
+        order.Name = from.FilledName(AgreementSettings::LongestName);
     }
     return from.IsAtEnd() ? std::optional(std::move(request)) : std::nullopt;
 }
 
 std::optional<ClaimReply> DecodeClaimReply(std::span<const std::uint8_t> bytes)
 {
-    ClaimBytes from(bytes);
+    AgreementBytes from(bytes);
     if (from.Take<std::uint8_t>() != ReplyByte)
     {
         return std::nullopt;
@@ -164,12 +101,12 @@ std::optional<ClaimReply> DecodeClaimReply(std::span<const std::uint8_t> bytes)
     reply.Renewal = from.Take<std::uint32_t>();
     reply.Number = from.Take<std::uint32_t>();
     reply.Fences = from.Take<std::uint64_t>();
-    reply.Results.resize(from.Count());
+    reply.Results.resize(from.Count(ClaimRequest::MostOrders));
     for (ClaimResult &result : reply.Results)
     {
         result.What = from.TakeKind(ClaimResult::Kind::Refused);
         result.Milliseconds = from.Take<std::uint32_t>();
-        result.Name = from.ClaimName();
+        result.Name = from.FilledName(AgreementSettings::LongestName);
         result.Holder = from.Name(LongestNode);
     }
     return from.IsAtEnd() ? std::optional(std::move(reply)) : std::nullopt;

@@ -36,7 +36,9 @@ struct ClaimOrder
 // From a claimant to a voter. Without orders it renews the lease alone, and goes to all.
 struct ClaimRequest
 {
-    static constexpr std::size_t MostOrders = 16;
+    // The reply fits in a datagram of 1,200 bytes: it has 54 bytes, and 271 more for each order if both names
+    // are as long as they may be.
+    static constexpr std::size_t MostOrders = 4;
 
     std::uint64_t Group = 0;  // AgreementSettings::Group
     std::uint64_t Incarnation = 0;

@@ -225,6 +225,17 @@ TEST(ClaimMessages, AreRefusedIfBytesAreMissingOrLeft)
     EXPECT_FALSE(DecodeClaimRequest(longer));
 }
 
+TEST(ClaimMessages, FitInADatagramWithTheLongestNames)
+{
+    ClaimReply reply;
+    for (std::size_t i = 0; i < ClaimRequest::MostOrders; ++i)
+    {
+        reply.Results.push_back({.Name = std::string(64, 'n'), .Holder = std::string(200, 'h')});
+    }
+    ASSERT_TRUE(DecodeClaimReply(EncodeClaimReply(reply)));
+    EXPECT_LE(EncodeClaimReply(reply).size(), 1200U);
+}
+
 TEST(ClaimMessages, AreRefusedWithAnEmptyOrALongName)
 {
     EXPECT_FALSE(DecodeClaimRequest(EncodeClaimRequest({.Orders = {{.Name = ""}}})));

@@ -38,6 +38,7 @@ public:
 
     Network Air;
     std::vector<std::string> Violations;
+    std::map<std::string, std::size_t> Sent;  // datagrams of each node; one for all counts once
 
     ClaimFleet(std::vector<std::string> names, std::uint64_t seed) : _names(std::move(names)), _random(seed)
     {
@@ -273,6 +274,7 @@ private:
         member.LookedAt = _now;
         while (auto datagram = member.Node->TakeDue(Local(member)))
         {
+            ++Sent[name];
             for (const std::string &to :
                  datagram->To.empty() ? _names : std::vector<std::string>{datagram->To})
             {

@@ -164,6 +164,33 @@ TEST_F(Leases, CountAMajorityAlone)
     EXPECT_EQ(_lease.UntilOf(std::vector<std::string_view>{"b", "c"}), 12s);
 }
 
+TEST_F(Leases, AreRenewedMoreAndMoreRarelyWithoutAMajority)
+{
+    std::chrono::nanoseconds now = 10s;
+    for (int i = 0; i < 30; ++i)
+    {
+        _lease.Renew(now);
+        now = *_lease.RenewAt();
+    }
+    _lease.Renew(now);
+    EXPECT_EQ(*_lease.RenewAt() - now, 2s);
+}
+
+// Else the acknowledged lease ends before its next renewal.
+TEST_F(Leases, AreRenewedInTimeOnceAMajorityAnswersAgain)
+{
+    std::chrono::nanoseconds now = 10s;
+    for (int i = 0; i < 30; ++i)
+    {
+        _lease.Renew(now);
+        now = *_lease.RenewAt();
+    }
+    const ClaimRequest request = _lease.Renew(now);
+    _lease.Take("b", ReplyTo(request), now);
+    _lease.Take("c", ReplyTo(request), now);
+    EXPECT_EQ(*_lease.RenewAt() - now, 500ms);
+}
+
 // 64 voters with orders each 100 ms send more renewals in a lease than voters acknowledge.
 TEST_F(Leases, KnowWhenEachRenewalOfALeaseWasSent)
 {

@@ -165,6 +165,23 @@ TEST(Claims, AreNotGivenWithoutAMajority)
     EXPECT_THAT(fleet.ToldBy("uav1"), ElementsAre(IsTold(Told::NoMajority)));
 }
 
+TEST(Claims, AreAskedForOnceASecondWithoutAMajorityAndGivenSoonAfterOneIsThere)
+{
+    ClaimFleet fleet(Five, 14);
+    fleet.Start("uav1");
+    fleet.Want("uav1", "leader");
+    fleet.RunFor(10s);
+    fleet.Sent.clear();
+    fleet.RunFor(60s);
+    EXPECT_LE(fleet.Sent["uav1"], 90U);
+    for (const char *name : {"ground", "uav2", "uav3", "uav4"})
+    {
+        fleet.Start(name);
+    }
+    fleet.RunFor(Abstention);
+    EXPECT_TRUE(fleet.UntilHeld("leader", 3s));
+}
+
 TEST(Claims, AreLostByOneThatIsCutOffBeforeAnotherOneGainsThem)
 {
     ClaimFleet fleet(Five, 5);
