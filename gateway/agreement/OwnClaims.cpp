@@ -131,6 +131,9 @@ void OwnClaims::Enter(Claim &claim, Phase phase, Duration now)
 void OwnClaims::Begin(Claim &claim, Duration now)
 {
     claim.Votes.Ask();
+    claim.Refused = false;
+    claim.Patience = Apart + RandomPart();
+    claim.AskAgainAt = now + Apart / 2;
     Enter(claim, Phase::Asking, now);
 }
 
@@ -143,9 +146,12 @@ void OwnClaims::Release(Claim &claim, Duration now)
 void OwnClaims::GiveWay(Claim &claim, Duration wait, Duration now)
 {
     Release(claim, now);
-    claim.RetryAt =
-        now + wait +
-        Duration(static_cast<std::int64_t>(_random() % static_cast<std::uint64_t>(Apart.count())));
+    claim.RetryAt = now + wait + RandomPart();
+}
+
+OwnClaims::Duration OwnClaims::RandomPart()
+{
+    return Duration(static_cast<std::int64_t>(_random() % static_cast<std::uint64_t>(Apart.count())));
 }
 
 OwnClaims::Duration OwnClaims::HeldUntil(const Claim &claim) const
@@ -162,6 +168,13 @@ OwnClaims::Duration OwnClaims::InVainFrom(const Claim &claim) const
         from = std::max({from, claim.Since + _settings.VotersLease(), _lease.UntilOf(voter)});
     }
     return from;
+}
+
+// If voters are silent, a claimant that was refused by others waits the longer the more have granted.
+OwnClaims::Duration OwnClaims::PatienceOf(const Claim &claim) const
+{
+    const auto granted = static_cast<std::int64_t>(claim.Votes.Count(ClaimVotes::Kind::Granted));
+    return claim.Refused ? std::min(claim.Patience + granted * Apart, _settings.Lease) : _settings.Lease;
 }
 
 bool OwnClaims::Renews() const
@@ -235,15 +248,24 @@ void OwnClaims::JudgeAsked(const std::string &name, Claim &claim, Duration now)
         return;
     }
     const std::size_t refusals = claim.Votes.Count(ClaimVotes::Kind::Refused);
-    if (_settings.Members.size() - refusals >= _settings.Majority() && now - claim.Since <= _settings.Lease)
+    claim.Refused = claim.Refused || refusals > 0;
+    const bool mayWin = _settings.Members.size() - refusals >= _settings.Majority();
+    if (mayWin && now - claim.Since <= PatienceOf(claim))
     {
+        if (now >= claim.AskAgainAt)
+        {
+            claim.Votes.AskRefusedAgain();
+            claim.AskAgainAt = now + Apart / 2;
+            Hurry(now);
+        }
         return;
     }
-    // If some voters are silent, the others may be split, and nobody would win before one gives way.
     ClaimVotes::Refusal refusal = claim.Votes.LongestRefusal();
-    GiveWay(claim, refusal.Wait, now);
+    // If some voters are silent, the others may be split. Then the votes of the one that gives way first are
+    // for the others.
+    GiveWay(claim, mayWin ? std::max<Duration>(refusal.Wait, Apart) : refusal.Wait, now);
     _events.push_back(
-        {refusals == 0 ? Event::Kind::NoMajority : Event::Kind::Refused, name, 0, std::move(refusal.Holder)});
+        {claim.Refused ? Event::Kind::Refused : Event::Kind::NoMajority, name, 0, std::move(refusal.Holder)});
 }
 
 void OwnClaims::JudgeReleased(Claim &claim, Duration now)
@@ -351,6 +373,12 @@ std::optional<OwnClaims::Duration> OwnClaims::Due() const
                 by(claim.Keeps ? std::min(claim.RetryAt, InVainFrom(claim)) : InVainFrom(claim));
                 break;
             case Phase::Asking:
+                by(claim.Since + PatienceOf(claim) + std::chrono::nanoseconds(1));
+                if (claim.Votes.Count(ClaimVotes::Kind::Refused) > 0)
+                {
+                    by(claim.AskAgainAt);
+                }
+                break;
             case Phase::Accepting:
                 by(claim.Since + _settings.Lease + std::chrono::nanoseconds(1));
                 break;

@@ -99,8 +99,11 @@ private:
         ClaimVotes Votes;
         Phase Now = Phase::Asking;
         bool Keeps = false;
-        Duration Since{0};    // of the phase
-        Duration RetryAt{0};  // of Waiting, and of Releasing a claim that is kept wanted
+        Duration Since{0};     // of the phase
+        Duration RetryAt{0};   // of Waiting, and of Releasing a claim that is kept wanted
+        bool Refused = false;  // since Asking began
+        Duration Patience{0};
+        Duration AskAgainAt{0};  // those that refused
     };
     using Claims = std::map<std::string, Claim, std::less<>>;
 
@@ -109,6 +112,8 @@ private:
     void Release(Claim &claim, Duration now);
     // Releases the claim. If it is kept wanted, it is asked for again after that time and a random one.
     void GiveWay(Claim &claim, Duration wait, Duration now);
+    Duration RandomPart();
+    Duration PatienceOf(const Claim &claim) const;
     void Judge(const std::string &name, Claim &claim, Duration now);
     void JudgeAsked(const std::string &name, Claim &claim, Duration now);
     void JudgeReleased(Claim &claim, Duration now);
