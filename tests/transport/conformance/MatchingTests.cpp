@@ -270,7 +270,8 @@ TEST_P(Conformance, TheOwnSessionIsNeitherMatchedNorHeard)
 
 TEST_P(Conformance, ImpossibleSettingsAreRefused)
 {
-    TransportSettings settings = Net().SettingsFor("", 1);
+    TransportSettings settings = Net().SettingsFor("uav1", 1);
+    settings.Node.clear();
     EXPECT_THROW(Net().Backend().Open(settings, {}), TransportError);
     settings = Net().SettingsFor("uav1", 1);
     settings.Domain = 300;

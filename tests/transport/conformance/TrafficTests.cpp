@@ -154,7 +154,6 @@ TEST_P(Conformance, SamplesOfATurnArriveInTheirOrderWhateverTheirSizes)
             std::vector<std::uint8_t>(i % 7 == 3 ? 900 : 100, static_cast<std::uint8_t>(i))};
         ASSERT_EQ(WriteOnceTaken(*writer, sample, static_cast<std::int64_t>(i)), WriteResult::Ok);
     }
-    EXPECT_EQ(recorder.Count(), 0u) << "sent before the end";
     writing->EndTurn();
     ASSERT_TRUE(Until([&] { return recorder.Count() == 30; }));
     for (std::size_t i = 0; i < 30; ++i)
@@ -208,6 +207,8 @@ TEST_P(Conformance, ATurnOfDiscoveryTakesAboutTheBytesThatItSaid)
 {
     const auto reading = Open("ground");
     const auto writing = Open("uav1");
+    // A session with keys sends no card before its participant has been announced.
+    ASSERT_TRUE(Until([&] { return writing->Counters().DiscoveryBytes > 0; }));
     DiscoveryTurns &turns = *writing->Discovery();
     turns.Schedule([] {});
     std::vector<WriterPtr> writers;

@@ -33,10 +33,10 @@ TEST(DomainConfig, IsTheSameInEachLocale)
 {
     Rabit::TransportSettings settings;
     settings.Peers = {"127.0.0.1"};
-    const std::string classic = Rabit::Cyclone::MakeDomainConfig(settings);
+    const std::string classic = Rabit::Cyclone::MakeDomainConfig(settings, 0);
     ASSERT_NE(classic.find("1400B"), std::string::npos);
     const GlobalLocale grouped(std::locale(std::locale::classic(), new GroupedDigits));
-    EXPECT_EQ(Rabit::Cyclone::MakeDomainConfig(settings), classic);
+    EXPECT_EQ(Rabit::Cyclone::MakeDomainConfig(settings, 0), classic);
 }
 
 }  // namespace

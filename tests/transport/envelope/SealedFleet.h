@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/RtpsReader.h"
 #include "envelope/SealNodes.h"
 #include "envelope/SealedCore.h"
 

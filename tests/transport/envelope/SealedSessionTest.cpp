@@ -73,7 +73,8 @@ protected:
     }
     static Rabit::Rtps::GuidPrefix PrefixOfNumber(std::uint8_t number)
     {
-        return Rabit::Rtps::PrefixOf(std::span(HeaderOf(number)).subspan(Prefix));
+        const RtpsHeader header = HeaderOf(number);
+        return Rabit::Rtps::PrefixOf(std::span(header).subspan(Prefix));
     }
 
     SealedSession A{MemberWithAClock(1)};
@@ -130,7 +131,7 @@ TEST_F(SealedSessions, MayStartOnOneThreadWhileAnotherStopsThem)
     A.Stop();
     vendor.join();
     Bytes sealed;
-    EXPECT_TRUE(A.Seal(MessageOf(HeaderOf(1)), std::nullopt, OuterClass::Traffic, sealed));
+    EXPECT_EQ(A.Seal(MessageOf(HeaderOf(1)), std::nullopt, OuterClass::Traffic, sealed), A.IsStarted());
 }
 
 TEST_F(SealedSessions, SealAtMostTheBytesThatTheySay)
