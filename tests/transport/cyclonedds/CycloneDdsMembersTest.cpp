@@ -102,26 +102,6 @@ TEST_F(CycloneDdsMembersTest, AProgramWithoutKeysHearsNothingAndIsNotHeard)
     EXPECT_EQ(atPlain.Count(Kind::Appeared, "witness", 1), 1);
 }
 
-TEST_F(CycloneDdsMembersTest, OnATopicThatAMemberMayNotWriteNothingOfItIsDelivered)
-{
-    const TestMembers::Rules rules{{.Topic = "Allowed", .MayWrite = true, .MayRead = true},
-                                   {.Topic = "Text", .MayWrite = false, .MayRead = true}};
-    SampleRecorder allowed;
-    SampleRecorder forbidden;
-    const auto uav = Backend().Open(SettingsWith("uav1", TestMembers("fleet").Member("uav1", rules)), {});
-    const auto ground = Backend().Open(Settings("ground"), {});
-    // One card announces both writers.
-    const auto other = uav->CreateWriter(TextTopic(), State(), {});
-    const auto writer = uav->CreateWriter(TextTopic("Allowed"), State(), {});
-    const auto otherReader = ground->CreateReader(TextTopic(), State(), {}, forbidden.Handler());
-    const auto reader = ground->CreateReader(TextTopic("Allowed"), State(), {}, allowed.Handler());
-    ASSERT_EQ(WriteOnceTaken(*other, MakeSample(0, "forbidden"), 1), WriteResult::Ok);
-    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "allowed"), 1), WriteResult::Ok);
-    ASSERT_TRUE(Net().Until([&] { return allowed.Count() == 1; }));
-    EXPECT_EQ(otherReader->MatchedWriters(), 0);
-    EXPECT_EQ(forbidden.Count(), 0u);
-}
-
 TEST_F(CycloneDdsMembersTest, NothingThatGoesToAGroupIsPlain)
 {
     const int first = 7400 + 250 * Settings("uav1").Domain;

@@ -85,16 +85,6 @@ TEST_F(FastDdsMembersTest, MembersDeliverToEachOther)
     ExpectDelivery(SettingsOf("uav1"), SettingsOf("ground"));
 }
 
-TEST_F(FastDdsMembersTest, MembersDeliverToEachOtherWithoutMulticastIfOneListsTheOther)
-{
-    auto uav = SettingsOf("uav1");
-    auto ground = SettingsOf("ground");
-    uav.Multicast = false;
-    ground.Multicast = false;
-    ground.Peers = {"127.0.0.1"};
-    ExpectDelivery(uav, ground);
-}
-
 TEST_F(FastDdsMembersTest, MembersDeliverToEachOtherInLargeDatagrams)
 {
     auto uav = SettingsOf("uav1");

@@ -63,27 +63,6 @@ TEST_P(MixedMembers, ALargeSampleArrives)
     ExpectArrival(std::string(1'000'000, 'x'));
 }
 
-TEST_P(MixedMembers, OnATopicThatAMemberMayNotWriteNothingOfItIsDelivered)
-{
-    const TestMembers::Rules rules{{.Topic = "Allowed", .MayWrite = true, .MayRead = true},
-                                   {.Topic = "Text", .MayWrite = false, .MayRead = true}};
-    auto settings = Settings("uav1");
-    settings.Member = TestMembers("fleet").Member("uav1", rules);
-    SampleRecorder allowed;
-    SampleRecorder forbidden;
-    const auto uav = Writer().Open(settings, {});
-    const auto ground = Reader().Open(Settings("ground"), {});
-    const auto other = uav->CreateWriter(TextTopic(), State(), {});
-    const auto writer = uav->CreateWriter(TextTopic("Allowed"), State(), {});
-    const auto otherReader = ground->CreateReader(TextTopic(), State(), {}, forbidden.Handler());
-    const auto reader = ground->CreateReader(TextTopic("Allowed"), State(), {}, allowed.Handler());
-    ASSERT_EQ(WriteOnceTaken(*other, MakeSample(0, "forbidden"), 1), WriteResult::Ok);
-    ASSERT_EQ(WriteOnceTaken(*writer, MakeSample(0, "allowed"), 1), WriteResult::Ok);
-    ASSERT_TRUE(_net.Until([&] { return allowed.Count() == 1; }));
-    EXPECT_EQ(otherReader->MatchedWriters(), 0);
-    EXPECT_EQ(forbidden.Count(), 0u);
-}
-
 }  // namespace
 
 INSTANTIATE_TEST_SUITE_P(Backends, MixedMembers, testing::Values(Writing::FastDds, Writing::CycloneDds));
