@@ -122,12 +122,14 @@ public:
     // Records a datagram that we send.
     void Sending(std::span<const std::uint8_t> datagram);
     // True if a datagram may go to that address, which is not a group's (Ledger::MayGo). To a stranger it
-    // does not go while the kernel awaits the hardware address, but for one a second.
+    // does not go while the kernel awaits the hardware address, but for one a second. With an authority
+    // samples go to all places: members alone are announced, and one that only reads has not spoken.
     bool MayGo(const Place &to, std::size_t bytes, Ledger::Cargo cargo, HardwareAddresses &addresses,
                TimePoint now)
     {
-        const auto going =
-            _mode == Mode::Full ? _ledger->MayGo(to, bytes, cargo, now) : Ledger::Going::Freely;
+        const bool isToMember = _authority && cargo == Ledger::Cargo::Samples;
+        const auto going = _mode == Mode::Full && !isToMember ? _ledger->MayGo(to, bytes, cargo, now)
+                                                              : Ledger::Going::Freely;
         return going == Ledger::Going::Freely ||
                (going == Ledger::Going::AsToStranger && addresses.MayAsk(to.Host, now));
     }
