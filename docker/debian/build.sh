@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Makes the Debian packages in a fresh Debian of each RELEASE, has lintian check them, and puts them into FOLDER.
-#   docker/debian/build.sh [--ccache FOLDER] FOLDER [RELEASE...]   default: bookworm trixie
-# Needs what ../bare.sh needs; --ccache: the compiler's cache. Exit code: that of bare.sh; lintian's errors and warnings are
+#   docker/debian/build.sh [--ccache FOLDER | --own-ccache] FOLDER [RELEASE...]   default: bookworm trixie
+# Needs what ../bare.sh needs; --ccache, --own-ccache: the compiler's cache, as there. Exit code: that of bare.sh; lintian's errors and warnings are
 # failures.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -9,6 +9,9 @@ cache=()
 if [ "${1:-}" = --ccache ] && [ $# -ge 2 ]; then
     cache=(--ccache "$2")
     shift 2
+elif [ "${1:-}" = --own-ccache ]; then
+    cache=(--own-ccache)
+    shift
 fi
 if [ $# -eq 0 ] || [ "${1:0:1}" = - ]; then
     sed -n '2,5s/^# \?//p' "${BASH_SOURCE[0]}" >&2

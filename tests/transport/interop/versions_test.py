@@ -41,7 +41,7 @@ def make_root(folder, arm64):
     release = "bookworm" if arm64 else RELEASES.get(harness.debian())
     if release is None:
         harness.skip("needs Debian 12 or 13")
-    return subprocess.run([HERE.parents[2] / "docker" / "bare.sh", "--keep", folder, release,
+    return subprocess.run([HERE.parents[2] / "docker" / "bare.sh", "--own-ccache", "--keep", folder, release,
                            BUILD_ARM64 if arm64 else BUILD], check=False).returncode
 
 
