@@ -63,7 +63,7 @@ find_container() {
     fail "no node '$1' in the fleet '$fleet'; there are: $(containers | awk '{printf "%s ", $2}')" 2
 }
 
-# The authorities of a fleet with keys are in a volume that no node mounts.
+# The authority of a fleet with keys is in a volume that no node mounts.
 authority=$fleet-authority
 folder=/var/lib/rabit
 
@@ -77,9 +77,9 @@ with_authority() {
         --volume "$authority:$folder" "$@"
 }
 
-make_authorities() {
+make_authority() {
     docker volume create --label "$label" "$authority" >/dev/null
-    with_authority --entrypoint rabit "$image" keys init "$folder/keys" --name "$fleet" >/dev/null
+    with_authority --entrypoint rabit "$image" keys init "$folder/keys" >/dev/null
 }
 
 # give_keys CONTAINER NODE OPTION... -- PROGRAM: makes the keys, and copies the node's own into its
@@ -128,7 +128,7 @@ up() {
     [[ $uavs =~ ^[1-9][0-9]{0,2}$ ]] || fail "up takes a number of aircraft from 1 to 999, not '$uavs'" 2
     docker image inspect "$image" >/dev/null 2>&1 ||
         docker build --tag "$image" --file "$here/Dockerfile" "$here/.."
-    [ -z "$secure" ] || has_keys || make_authorities
+    [ -z "$secure" ] || has_keys || make_authority
     make_network
     run_node ground ground --web 0.0.0.0:8080 "${page[@]}" --search '*' --search-area 47.3977 8.5456 400 600 510
     for ((k = 1; k <= uavs; k++)); do

@@ -33,18 +33,15 @@ fi
 config=/etc/rabit/nodes/$NODE.yaml
 [ -f "$config" ] || config=/etc/rabit/$role.yaml
 
+if [ -n "${MAKE_KEYS:-}" ]; then
+    exec rabit keys add "$NODE" --keys "$MAKE_KEYS" --config "$config"
+fi
 # The backends in turn: the ground station and uav1 have the first, uav2 the second, and so on, round robin.
-transport=
 if [ -n "${TRANSPORTS:-}" ]; then
     number=$(expr "${NODE%.vision}" : '.*[^0-9]0*\([0-9][0-9]*\)$' || echo 1)
     count=$(echo "$TRANSPORTS" | wc -w)
     wanted=$(((${number:-1} - 1) % count + 1))
-    transport=$(echo "$TRANSPORTS" | awk -v n="$wanted" '{print $n}')
-    set -- --transport "$transport" "$@"
-fi
-if [ -n "${MAKE_KEYS:-}" ]; then
-    exec rabit keys add "$NODE" --keys "$MAKE_KEYS" --config "$config" ${DOMAIN:+--domain "$DOMAIN"} \
-        ${transport:+--transport "$transport"}
+    set -- --transport "$(echo "$TRANSPORTS" | awk -v n="$wanted" '{print $n}')" "$@"
 fi
 [ -z "${KEYS:-}" ] || set -- --keys "$KEYS" "$@"
 # The simulated world; a real aircraft flies over other ground.

@@ -19,8 +19,7 @@ missing Debian packages and builds what is missing first.
   --radios two       each aircraft has two emulated radios, a fast mesh and a slow modem; needs root and iproute2. The
                      script prints how to cut the mesh
   --secure           with fresh keys, a folder for each node: strangers are neither heard nor answered
-  --domain N         DDS domain, 0 to 232, with --secure to 230, that nobody on this machine uses (default: one
-                     that is free)
+  --domain N         DDS domain, 0 to 232, that nobody on this machine uses (default: one that is free)
   --record DIR       let each process record itself into this folder: see black_box.sh
   --bin DIR          take the programs uav, vision and ground, and with --secure rabit, from this folder; install and
                      build nothing
@@ -116,9 +115,6 @@ while [ $# -gt 0 ]; do
 done
 [ ${#tracks[@]} -le "$uavs" ] ||
     fail_usage "${#tracks[@]} tracks are too many for --uavs $uavs"
-# Cyclone DDS checks keys in one session of a process alone.
-[ -z "$radios" ] || [ -z "$secure" ] || [ "${transport:-fastdds}" = fastdds ] ||
-    fail_usage "--radios two with --secure needs --transport fastdds"
 [ -z "$radios" ] || { [ "$(id -u)" -eq 0 ] && command -v ip tc >/dev/null; } ||
     fail_usage "--radios two needs root and iproute2"
 for track in "${tracks[@]}"; do
@@ -219,12 +215,10 @@ keys=
 if [ -n "$secure" ]; then
     keys=$(mktemp -d)
     trap 'rm -rf "$logs" "$keys"' EXIT
-    said=$("$bin/rabit" keys init "$keys/fleet" --name demo 2>&1) || fail_usage "$said"
+    said=$("$bin/rabit" keys init "$keys/fleet" 2>&1) || fail_usage "$said"
 fi
-make_keys() { # make_keys NODE TRANSPORT [OPTION...]
-    [ -z "$keys" ] ||
-        said=$("$bin/rabit" keys add "$1" --keys "$keys/fleet" --domain "$domain" --transport "$2" "${@:3}" 2>&1) ||
-        fail_usage "$said"
+make_keys() { # make_keys NODE OPTION...
+    [ -z "$keys" ] || said=$("$bin/rabit" keys add "$1" --keys "$keys/fleet" "${@:2}" 2>&1) || fail_usage "$said"
 }
 keys_argument() { # keys_argument NODE: adds to the array `arguments`
     [ -z "$keys" ] || arguments+=(--keys "$keys/fleet/$1")
@@ -248,8 +242,8 @@ vision_arguments() { # vision_arguments K: sets the array `arguments`
 arguments=(--config "$ground_config" --domain "$domain" --transport "$(transport_of 1)")
 keys_argument ground
 ground_arguments=("${arguments[@]}" --search-area 47.3977 8.5456 400 600 510)
-make_keys ground "$(transport_of 1)" --config "$ground_config"
-make_keys laptop "$(transport_of 1)" --tool
+make_keys ground --config "$ground_config"
+make_keys laptop --tool
 among=()
 among_radios() { # among_radios K: sets the array `among`, the words before a command that runs where aircraft K has its radios
     [ -z "$radios" ] || among=(ip netns exec "$(radios_inside "$1")")
@@ -264,8 +258,8 @@ fi
 for ((k = 1; k <= uavs; k++)); do
     ground_arguments+=(--expect "uav$k")
     [ "$k" -le ${#tracks[@]} ] || ground_arguments+=(--search "uav$k")
-    make_keys "uav$k" "$(transport_of "$k")" --config "$uav_config"
-    make_keys "uav$k.vision" "$(transport_of "$k")" --config "$vision_config"
+    make_keys "uav$k" --config "$uav_config"
+    make_keys "uav$k.vision" --config "$vision_config"
     among_radios "$k"
     uav_arguments "$k"
     "${among[@]}" "$bin/uav" "${arguments[@]}" --check || exit $?
@@ -366,7 +360,10 @@ ground_pid=$!
 echo "DDS domain $domain. Processes: $started, ground ($ground_pid). Ctrl-C ends them." >&2
 [ -z "$radios" ] || echo "Radios: the mesh is $radios_mesh, the modem $radios_modem. To cut the mesh: ip link set $radios_mesh down;" \
     "to mend it: ip link set $radios_mesh up" >&2
-[ -z "$keys" ] || echo "Strangers are kept out. To look at it: $bin/rabit nodes --keys $keys/fleet/laptop --interface lo" >&2
+interface=lo
+[ -z "$radios" ] || interface=$radios_mesh
+[ -z "$keys" ] || echo "Strangers are kept out. To look at it: $bin/rabit nodes --keys $keys/fleet/laptop --domain $domain" \
+    "--transport $(transport_of 1) --interface $interface" >&2
 
 # From here on the shell's own notices, for instance of an aircraft that was killed, would spoil the table.
 exec 3>&2 2>/dev/null

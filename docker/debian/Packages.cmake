@@ -31,7 +31,7 @@ set(package_version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 
 # Dependencies of headers and static libraries, which dpkg-shlibdeps does not find.
 set(dev_needs "rabit-tools (= ${package_version})" libboost-dev libfastcdr-dev libyaml-cpp-dev libzstd-dev zlib1g-dev
-    libssl-dev libtinyxml2-dev nlohmann-json3-dev cyclonedds-dev)
+    libssl-dev nlohmann-json3-dev cyclonedds-dev)
 get_property(backends GLOBAL PROPERTY RABIT_BACKENDS_DEBIAN)
 list(APPEND dev_needs ${backends})
 list(REMOVE_DUPLICATES dev_needs)

@@ -9,6 +9,7 @@
 #include <rabit/base/NumberIn.h>
 #include <rabit/base/Printable.h>
 #include <rabit/base/UtcText.h>
+#include <rabit/base/WireBytes.h>
 #include <rabit/base/WithoutByteOrderMark.h>
 
 #include <chrono>
@@ -56,6 +57,31 @@ TEST(BaseExample, NumbersAndBytes)
     RABIT_ASSERT(bytes.size() == 4);
 }
 // [/bytes]
+
+// [wire]
+TEST(BaseExample, FieldsAreReadFromUntrustedBytes)
+{
+    const std::uint64_t count = 300;
+    const std::string_view name = "uav1";
+    std::vector<std::uint8_t> bytes(Rabit::VarintSize(count) + sizeof(std::uint32_t) + 1 + name.size());
+    Rabit::WireWriter writer(bytes);
+    writer.Varint(count);
+    writer.Fixed(std::uint32_t{7});
+    writer.Name(name);
+
+    Rabit::WireReader whole(bytes);
+    EXPECT_EQ(whole.Varint(1000), count);
+    EXPECT_EQ(whole.Fixed<std::uint32_t>(), 7u);
+    EXPECT_EQ(whole.Name(), name);
+    EXPECT_TRUE(whole.IsGood() && whole.Left() == 0);
+
+    // The count is too large here, so nothing behind it is read.
+    Rabit::WireReader refused(bytes);
+    EXPECT_EQ(refused.Varint(299), 0u);
+    EXPECT_EQ(refused.Name(), "");
+    EXPECT_FALSE(refused.IsGood());
+}
+// [/wire]
 
 // [printable]
 TEST(BaseExample, TextOfTheNetworkStaysOneLineOfALog)

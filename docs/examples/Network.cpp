@@ -1,5 +1,6 @@
 // The abstract network, here on the simulated one: what a backend offers, and what a test may break.
 #include <gtest/gtest.h>
+#include <rabit/simulated/SimulatedKeys.h>
 #include <rabit/simulated/SimulatedNetwork.h>
 #include <rabit/simulated/SimulatedTransport.h>
 #include <rabit/transport/DiscoveryTurns.h>
@@ -100,12 +101,19 @@ TEST(NetworkExample, AMemberOfAFleetNeedsKeysThatBelongTogether)
     const Rabit::MemberKeys keys{};  // the content of a key folder; here, nothing
     Rabit::MadeMember made = Rabit::MakeFleetMember(keys);
     EXPECT_EQ(made.Error, "the certificate is damaged");
+    EXPECT_EQ(made.Member, nullptr);
 
-    // One member serves all sessions of a node.
-    const std::shared_ptr<Rabit::FleetMember> member = std::move(made.Member);
+    // A test makes keys in memory. One member serves all sessions of a node.
+    Rabit::SimulatedNetwork network(1);
+    Rabit::SimulatedKeys fleet(network);
+    const std::shared_ptr<Rabit::FleetMember> member = fleet.Member("uav1");
     Rabit::TransportSettings settings;
+    settings.Node = "uav1";
+    settings.Incarnation = 1;
     settings.Member = member;
-    EXPECT_EQ(settings.Member, nullptr);
+    const std::unique_ptr<Rabit::TransportSession> session =
+        Rabit::SimulatedTransport(network).Open(settings, [](const Rabit::PeerEvent &) {});
+    EXPECT_TRUE(member->Problems().empty());
 }
 // [/member]
 

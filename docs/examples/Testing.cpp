@@ -96,6 +96,21 @@ TEST(FleetTest, EachKnowsTheOthersMissionDespiteALoss)
 }
 // [/fleet]
 
+// [keys]
+TEST(FleetTest, AProgramWithoutKeysIsNotHeard)
+{
+    Rabit::SimulatedFleet fleet;
+    fleet.FlyWithKeys();
+    fleet.Add(ConfigOf("uav1"));
+    fleet.Add(ConfigOf("uav2"));
+    fleet.FlyWithKeys(false);
+    fleet.Add(ConfigOf("stranger"));
+    fleet.RunFor(10s);
+    EXPECT_EQ(fleet["uav2"].StateOf("uav1"), "UP");
+    EXPECT_EQ(fleet["uav2"].StateOf("stranger"), "");
+}
+// [/keys]
+
 // [idle]
 TEST(FleetTest, AnIdleManagerKeepsWhatOthersSend)
 {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <rabit/base/LittleEndian.h>
+#include <rabit/base/WireBytes.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -19,62 +19,56 @@ inline void PutName(std::string_view name, std::vector<std::uint8_t> &bytes)
     bytes.insert(bytes.end(), name.begin(), name.end());
 }
 
-// Reads untrusted bytes of an agreement's datagram, never beyond the end. After a missing or a wrong value
-// IsAtEnd is false, and all further values are zero or empty.
+// Reads the untrusted fields of an agreement's datagram. After a missing or a wrong value IsAtEnd is false,
+// and all further values are zero or empty.
 class AgreementBytes
 {
 public:
-    explicit AgreementBytes(std::span<const std::uint8_t> left) : _left(left) {}
+    explicit AgreementBytes(std::span<const std::uint8_t> bytes) : _from(bytes) {}
 
     template <typename Number>
     Number Take()
     {
-        return LittleEndian::Read<Number>(Bytes(sizeof(Number)));
+        return _from.Fixed<Number>();
     }
     std::string Name(std::size_t longest)
     {
-        const std::size_t size = Take<std::uint8_t>();
-        _good = _good && size <= longest;
-        const std::span<const std::uint8_t> bytes = Bytes(_good ? size : 0);
-        return {bytes.begin(), bytes.end()};
+        const std::string_view name = _from.Name();
+        return std::string(Checked(name, name.size() <= longest));
     }
     // A name that is not empty.
     std::string FilledName(std::size_t longest)
     {
-        std::string name = Name(longest);
-        _good = _good && !name.empty();
-        return name;
+        const std::string_view name = _from.Name();
+        return std::string(Checked(name, !name.empty() && name.size() <= longest));
     }
     template <typename Kind>
     Kind TakeKind(Kind last)
     {
-        const std::uint8_t kind = Take<std::uint8_t>();
-        _good = _good && kind <= static_cast<std::uint8_t>(last);
-        return _good ? static_cast<Kind>(kind) : Kind{};
+        const std::uint8_t kind = _from.Byte();
+        return static_cast<Kind>(Checked(kind, kind <= static_cast<std::uint8_t>(last)));
     }
     std::size_t Count(std::size_t most)
     {
-        const std::size_t count = Take<std::uint8_t>();
-        _good = _good && count <= most;
-        return _good ? count : 0;
+        const std::size_t count = _from.Byte();
+        return Checked(count, count <= most);
     }
-    bool IsAtEnd() const { return _good && _left.empty(); }
+    bool IsAtEnd() const { return _from.IsGood() && _from.Left() == 0; }
 
 private:
-    std::span<const std::uint8_t> Bytes(std::size_t size)
+    // The value, or an empty one if it is not allowed.
+    template <typename Value>
+    Value Checked(Value value, bool isAllowed)
     {
-        if (!_good || size > _left.size())
+        if (!isAllowed)
         {
-            _good = false;
-            return {};
+            _from.Fail();
+            return Value{};
         }
-        const std::span<const std::uint8_t> bytes = _left.first(size);
-        _left = _left.subspan(size);
-        return bytes;
+        return value;
     }
 
-    std::span<const std::uint8_t> _left;
-    bool _good = true;
+    WireReader _from;
 };
 
 }  // namespace Rabit

@@ -36,8 +36,7 @@ ConfigSection WholeFileSection()
          {"name", "1 to 64 of `A-Z a-z 0-9 _ . -`", "Gateway", "Lan",
           "Name of this gateway in its process. Its local message is `<name>/Fleet`. Two gateways in one "
           "workspace, for instance one for a radio and one for a LAN, need two names."},
-         {"domain", "0 to 232; 0 to 230 with keys", "0", "7",
-          "DDS domain. Nodes of different domains do not hear each other."},
+         {"domain", "0 to 232", "0", "7", "DDS domain. Nodes of different domains do not hear each other."},
          {"transport", "a DDS implementation of this build, as `fastdds` or `cyclonedds`", "fastdds",
           "cyclonedds", "DDS implementation of this node. A fleet may mix them."},
          {"interfaces", "list of names or addresses", "", "[wlan0]",
@@ -98,12 +97,9 @@ ConfigSection SecuritySection()
 {
     return {"security",
             "the section `security`",
-            "Keys keep unauthenticated peers out of the fleet. All nodes of a fleet need the same level.",
+            "Keys keep unauthenticated peers out of the fleet. Everything is encrypted and signed.",
             {{"keys", "path of a folder", "", "keys/uav1", "The node's folder, which `rabit keys add` made.",
-              RequiredKey},
-             {"level", "`sign` or `encrypt`", "encrypt", "sign",
-              "`sign`: everybody can read the messages, nobody can forge them. `encrypt`: outsiders can do "
-              "neither."}}};
+              RequiredKey}}};
 }
 
 ConfigSection RadioSection()

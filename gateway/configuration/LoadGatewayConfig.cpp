@@ -135,11 +135,16 @@ std::vector<YamlMap> Entries(const YamlMap &map, const std::string &key)
 void ReadSecurity(const YamlMap &map, const std::string &place, GatewayConfig &config,
                   std::optional<SecuritySettings> &settings)
 {
+    // Files for former versions have it.
+    if (const auto any = map.MapOfAnyKeys("security", ConfigSectionAt("security").Title);
+        any && any->Has("level"))
+    {
+        any->Fail(any->Line("level"), "with keys everything is encrypted and signed; remove `level`");
+    }
     if (const auto security = Section(map, "security", config, place))
     {
         settings.emplace();
         security->Read("keys", settings->Keys);
-        security->Read("level", {"sign", "encrypt"}, settings->Level);
     }
 }
 

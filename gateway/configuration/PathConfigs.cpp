@@ -16,7 +16,7 @@ void SetLines(const PathRule &path, const std::map<std::string, int> &all, std::
 {
     const std::string place = "paths." + path.Name + ".";
     for (const char *const setting : {"transport", "interfaces", "peers", "multicast", "radio.budget",
-                                      "radio.slowest_beat", "security.keys"})
+                                      "radio.slowest_beat", "security", "security.keys"})
     {
         const auto line = all.find(place + setting);
         if (line != all.end())

@@ -112,15 +112,9 @@ private:
     // `place` is that of a path in the file; empty: the gateway's own settings.
     void CheckSecurity(const std::optional<SecuritySettings> &security, const std::string &place) const
     {
-        constexpr int largestDomain = 230;  // the largest that both vendors support with security
-        if (security && security->Keys.empty())
+        if (security && security->Keys.empty() && !security->Member)
         {
             Fail(LineOf(place + "security.keys"), "no folder of keys; expected `keys: <folder>`");
-        }
-        if (security && _config.Domain > largestDomain)
-        {
-            Fail(LineOf("domain"), "with security the domain must be 0 to " + std::to_string(largestDomain) +
-                                       ", not " + std::to_string(_config.Domain));
         }
     }
 

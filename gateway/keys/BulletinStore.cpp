@@ -49,8 +49,30 @@ Bulletins ReadBulletins(std::string_view text, Envelope::VerifyingKey &authority
     return bulletins;
 }
 
-BulletinStore::BulletinStore(std::string file, std::string fallback, Bulletins known)
-    : _file(std::move(file)), _fallback(std::move(fallback)), _known(std::move(known))
+namespace
+{
+
+// Returns nothing if the file cannot be read, or if the authority did not sign all of it.
+Bulletins SignedIn(const std::string &file, Envelope::VerifyingKey &authority)
+{
+    try
+    {
+        return ReadBulletins(ReadFile(file), authority, file);
+    }
+    catch (const KeysError &)
+    {
+        return {};
+    }
+}
+
+}  // namespace
+
+BulletinStore::BulletinStore(std::string file, std::string fallback, Bulletins known,
+                             Envelope::VerifyingKey authority)
+    : _file(std::move(file)),
+      _fallback(std::move(fallback)),
+      _known(std::move(known)),
+      _authority(std::move(authority))
 {
 }
 
@@ -58,8 +80,11 @@ bool BulletinStore::Add(Envelope::Epoch epoch, std::span<const std::uint8_t> bul
 {
     try
     {
-        _known[epoch] = Bytes(bulletin.begin(), bulletin.end());
-        KeepNewest(_known);
+        Bulletins kept = SignedIn(_file, _authority);
+        kept.try_emplace(epoch, bulletin.begin(), bulletin.end());
+        kept.merge(_known);
+        KeepNewest(kept);
+        _known = std::move(kept);
         const std::string text = TextOf(_known);
         try
         {

@@ -28,16 +28,17 @@ Bulletins ReadBulletins(std::string_view text, Envelope::VerifyingKey &authority
 class BulletinStore
 {
 public:
-    BulletinStore(std::string file, std::string fallback, Bulletins known);
+    BulletinStore(std::string file, std::string fallback, Bulletins known, Envelope::VerifyingKey authority);
 
-    // Adds one, and replaces the file as a whole. Returns false if it could be stored at neither place.
-    // Throws nothing.
+    // Adds one, and replaces the file as a whole. Bulletins that a person copied there meanwhile hold,
+    // if the authority signed them all. Returns false if it could be stored at neither place. Throws nothing.
     bool Add(Envelope::Epoch epoch, std::span<const std::uint8_t> bulletin);
 
 private:
     const std::string _file;
     const std::string _fallback;
     Bulletins _known;
+    Envelope::VerifyingKey _authority;
 };
 
 }  // namespace Rabit::Keys

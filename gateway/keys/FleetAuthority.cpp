@@ -20,10 +20,6 @@ namespace Rabit::Keys
 namespace
 {
 
-constexpr const char *KeyFile = "key";
-constexpr const char *PublicFile = "authority";
-constexpr const char *BulletinFile = "bulletin";
-constexpr const char *IssuedCertificates = "issued";
 constexpr std::string_view AgreementContext = "Rabit authority 1";
 // Of the authority itself, in bulletins. Certificates begin at 1.
 constexpr Envelope::Serial OwnSerial = 0;
@@ -67,20 +63,11 @@ std::vector<Envelope::BulletinNode> NodesOf(const std::vector<Envelope::Certific
     return nodes;
 }
 
-MemberPublic KeysOf(const Envelope::Certificate &certificate)
-{
-    return {.Signing = certificate.Signing, .Agreement = certificate.Agreement};
-}
-
-bool ShareAKey(const MemberPublic &one, const MemberPublic &other)
-{
-    return one.Signing == other.Signing || one.Agreement == other.Agreement;
-}
-
 }  // namespace
 
 void FleetAuthority::Init(const std::string &folder, std::string_view passphrase)
 {
+    CheckFormat(folder);
     if (!std::filesystem::exists(folder))
     {
         MakeSecretFolder(folder);
@@ -88,32 +75,31 @@ void FleetAuthority::Init(const std::string &folder, std::string_view passphrase
     const std::string place = folder + "/" + AuthorityFolder;
     if (std::filesystem::exists(place))
     {
-        throw KeysError(folder + " has the authorities of a fleet already: nothing is changed");
+        throw KeysError(folder + " has the authority of a fleet already: nothing is changed");
     }
     const std::string made = folder + "/.authority.new";
     std::error_code ignored;
     std::filesystem::remove_all(made, ignored);
     MakeSecretFolder(made);
-    MakeSecretFolder(made + "/" + IssuedCertificates);
+    MakeSecretFolder(made + "/" + AuthorityIssuedFolder);
     const Envelope::SecretKey seed = RandomSecret();
     Opened opened = Open(seed);
-    WriteSecret(made + "/" + KeyFile, SigningKeyPem(seed, passphrase));
-    WriteFile(made + "/" + PublicFile, PublicKeyPem(opened.Signing.Public()));
+    WriteSecret(made + "/" + AuthorityKeyFile, SigningKeyPem(seed, passphrase));
+    WriteFile(made + "/" + AuthorityPublicFile, PublicKeyPem(opened.Signing.Public()));
     const Bytes first = NewBulletin(1, {}, {}, RandomSecret(), opened.Agreement, opened.Signing);
-    WriteFile(made + "/" + BulletinFile, TextOf(Bulletins{{Envelope::Epoch{1}, first}}));
+    WriteFile(made + "/" + AuthorityBulletinFile, TextOf(Bulletins{{Envelope::Epoch{1}, first}}));
     MoveFolder(made, place);
 }
 
 bool FleetAuthority::IsIn(const std::string &folder)
 {
-    return std::filesystem::exists(folder + "/" + AuthorityFolder + "/" + KeyFile) ||
-           std::filesystem::exists(folder + "/" + AuthorityFolder + "/" + BulletinFile);
+    return std::filesystem::exists(folder + "/" + AuthorityFolder + "/" + AuthorityKeyFile) ||
+           std::filesystem::exists(folder + "/" + AuthorityFolder + "/" + AuthorityBulletinFile);
 }
 
 FleetAuthority::FleetAuthority(const std::string &folder, AskPassphrase ask)
-    : _folder(folder), _ask(std::move(ask)), _lock(folder)
+    : _folder(folder), _ask(std::move(ask)), _lock(folder), _records(folder)
 {
-    _public = ReadPublicKey(ReadFile(Place(PublicFile)), Place(PublicFile));
     FinishReplacements(_folder);
 }
 
@@ -129,18 +115,13 @@ FleetAuthority::Opened FleetAuthority::Open(const Envelope::SecretKey &seed)
     return {.Signing = std::move(signing), .Agreement = AgreementKeyOf(*derived)};
 }
 
-std::string FleetAuthority::Place(const std::string &name) const
-{
-    return _folder + "/" + AuthorityFolder + "/" + name;
-}
-
 FleetAuthority::Opened &FleetAuthority::Key() const
 {
     if (!_key)
     {
-        const std::string file = Place(KeyFile);
+        const std::string file = _records.Place(AuthorityKeyFile);
         Opened opened = Open(ReadSigningKey(ReadSecret(file), file, _ask));
-        if (opened.Signing.Public() != _public)
+        if (opened.Signing.Public() != _records.Authority())
         {
             throw KeysError(file + " is not the key of the authority beside it");
         }
@@ -149,79 +130,14 @@ FleetAuthority::Opened &FleetAuthority::Key() const
     return *_key;
 }
 
-Bulletins FleetAuthority::Published() const
-{
-    Envelope::VerifyingKey authority = VerifyingKeyOf(_public);
-    return ReadBulletins(ReadFile(Place(BulletinFile)), authority, Place(BulletinFile));
-}
-
 Envelope::Epoch FleetAuthority::Epoch() const
 {
-    return Published().rbegin()->first;
-}
-
-std::vector<Envelope::Serial> FleetAuthority::RevokedSerials() const
-{
-    const Bulletins published = Published();
-    Envelope::VerifyingKey authority = VerifyingKeyOf(_public);
-    const auto newest = Envelope::Bulletin::Read(published.rbegin()->second, authority);
-    return newest ? newest->Revoked() : std::vector<Envelope::Serial>();
+    return _records.Published().rbegin()->first;
 }
 
 std::vector<std::string> FleetAuthority::Nodes() const
 {
     return FoldersWith(_folder, "certificate");
-}
-
-std::vector<Envelope::Certificate> FleetAuthority::Issued() const
-{
-    Envelope::VerifyingKey authority = VerifyingKeyOf(_public);
-    std::vector<Envelope::Certificate> certificates;
-    for (const auto &entry : std::filesystem::directory_iterator(Place(IssuedCertificates)))
-    {
-        const std::string file = entry.path().string();
-        if (entry.path().extension() == ".new")
-        {
-            continue;  // was cut short
-        }
-        const Bytes bytes = BlockIn(ReadFile(file), CertificateLabel, file);
-        const auto certificate = Envelope::ReadCertificate(bytes);
-        if (!certificate || !Envelope::IsCertifiedBy(bytes, authority))
-        {
-            throw KeysError(file + " is no certificate that the authority signed; remove it if you know why");
-        }
-        certificates.push_back(*certificate);
-    }
-    std::sort(certificates.begin(), certificates.end(),
-              [](const auto &one, const auto &other) { return one.Number < other.Number; });
-    return certificates;
-}
-
-std::vector<Envelope::Certificate> FleetAuthority::IssuedTo(const std::string &node) const
-{
-    std::vector<Envelope::Certificate> certificates = Issued();
-    std::erase_if(certificates, [&node](const auto &one) { return one.Name != node; });
-    return certificates;
-}
-
-std::vector<std::string> FleetAuthority::Revoked() const
-{
-    const std::vector<Envelope::Serial> revoked = RevokedSerials();
-    std::map<std::string, bool> areRevoked;
-    for (const Envelope::Certificate &one : Issued())
-    {
-        bool &all = areRevoked.try_emplace(one.Name, true).first->second;
-        all = all && std::find(revoked.begin(), revoked.end(), one.Number) != revoked.end();
-    }
-    std::vector<std::string> nodes;
-    for (const auto &[node, are] : areRevoked)
-    {
-        if (are)
-        {
-            nodes.push_back(node);
-        }
-    }
-    return nodes;
 }
 
 FleetAuthority::Request FleetAuthority::RequestOf(const std::string &node) const
@@ -231,35 +147,10 @@ FleetAuthority::Request FleetAuthority::RequestOf(const std::string &node) const
     return {.Node = node, .Role = folder.Certificate().Role, .Allowed = folder.Allowed()};
 }
 
-// A key that two nodes have was copied with a disk, and a key with a revoked certificate may be stolen.
-void FleetAuthority::CheckFresh(const std::string &node, const MemberPublic &keys) const
-{
-    const std::vector<Envelope::Serial> revoked = RevokedSerials();
-    for (const Envelope::Certificate &one : Issued())
-    {
-        if (!ShareAKey(keys, KeysOf(one)))
-        {
-            continue;
-        }
-        if (one.Name != node)
-        {
-            throw KeysError("the request of " + node + " has the key of " + one.Name +
-                            ": each node needs its own; make it with `rabit keys request` on " + node);
-        }
-        if (std::find(revoked.begin(), revoked.end(), one.Number) != revoked.end())
-        {
-            throw KeysError(node +
-                            " has a key whose certificate is revoked; remove the key on the node, and make "
-                            "another with `rabit keys request`");
-        }
-    }
-}
-
 void FleetAuthority::CheckKeepsNoKey(const std::vector<Envelope::Certificate> &older, const std::string &node,
-                                     const MemberPublic &keys) const
+                                     const MemberPublic &keys)
 {
-    if (std::any_of(older.begin(), older.end(),
-                    [&keys](const auto &one) { return ShareAKey(keys, KeysOf(one)); }))
+    if (std::any_of(older.begin(), older.end(), [&keys](const auto &one) { return HasAKeyOf(one, keys); }))
     {
         throw KeysError(node +
                         " keeps its key, so revoking the older certificates protects nothing: nothing is "
@@ -286,7 +177,7 @@ std::optional<MemberPublic> FleetAuthority::KeysFor(const std::string &node,
     }
     if (keys)
     {
-        CheckFresh(node, *keys);
+        _records.CheckFresh(node, *keys);
     }
     return keys;
 }
@@ -296,23 +187,24 @@ void FleetAuthority::CheckNewKey(const std::string &node, const MemberRequest *s
     CheckNodeName(node);
     if (const std::optional<MemberPublic> keys = KeysFor(node, signing))
     {
-        CheckKeepsNoKey(IssuedTo(node), node, *keys);
+        CheckKeepsNoKey(_records.IssuedTo(node), node, *keys);
     }
 }
 
 Bulletins FleetAuthority::IssueAnew(const std::vector<Envelope::Certificate> &certificates) const
 {
-    const std::vector<Envelope::BulletinNode> nodes = NodesOf(certificates, RevokedSerials());
-    Envelope::VerifyingKey authority = VerifyingKeyOf(_public);
+    const std::vector<Envelope::BulletinNode> nodes = NodesOf(certificates, _records.Revoked());
+    Envelope::VerifyingKey authority = VerifyingKeyOf(_records.Authority());
     Bulletins anew;
-    for (const auto &[epoch, bytes] : Published())
+    for (const auto &[epoch, bytes] : _records.Published())
     {
         const auto bulletin = Envelope::Bulletin::Read(bytes, authority);
         const auto secret = bulletin ? bulletin->Secret(OwnSerial, Key().Agreement) : std::nullopt;
         if (!secret)
         {
-            throw KeysError(Place(BulletinFile) + " has no secret for the authority in epoch " +
-                            std::to_string(epoch) + "; restore the folder from a copy");
+            throw KeysError(_records.Place(AuthorityBulletinFile) +
+                            " has no secret for the authority in epoch " + std::to_string(epoch) +
+                            "; restore the folder from a copy");
         }
         anew.emplace(epoch,
                      NewBulletin(epoch, bulletin->Revoked(), nodes, *secret, Key().Agreement, Key().Signing));
@@ -323,7 +215,7 @@ Bulletins FleetAuthority::IssueAnew(const std::vector<Envelope::Certificate> &ce
 void FleetAuthority::Make(const std::string &folder, const Request &request, const Period &period,
                           const std::optional<MemberPublic> &known) const
 {
-    std::vector<Envelope::Certificate> certificates = Issued();
+    std::vector<Envelope::Certificate> certificates = _records.Issued();
     const Envelope::Serial last = certificates.empty() ? OwnSerial : certificates.back().Number;
     const MemberSecrets secrets = MemberSecrets::Random();
     const MemberPublic keys = known ? *known : MemberPublic::Of(secrets);
@@ -349,7 +241,7 @@ void FleetAuthority::Make(const std::string &folder, const Request &request, con
     std::filesystem::remove_all(folder, ignored);
     MakeSecretFolder(folder);
     const MemberFiles files(folder);
-    WriteFile(files.Authority, PublicKeyPem(_public));
+    WriteFile(files.Authority, PublicKeyPem(_records.Authority()));
     if (!known)
     {
         WriteSecret(files.Key, secrets.Pem());
@@ -358,22 +250,48 @@ void FleetAuthority::Make(const std::string &folder, const Request &request, con
     WriteFile(files.Permissions, Armoured(PermissionsLabel, list));
     WriteFile(files.Bulletin, bulletins);
     // The serial is taken before anybody has the certificate.
-    WriteFile(Place(std::string(IssuedCertificates) + "/" + std::to_string(certificate.Number)),
-              Armoured(CertificateLabel, bytes));
-    WriteFile(Place(BulletinFile), bulletins);
+    _records.AddIssued(certificate.Number, bytes);
+    _records.Publish(bulletins);
 }
 
-void FleetAuthority::Add(const Request &request, const Period &period, const MemberRequest *signing) const
+std::optional<MemberPublic> FleetAuthority::KeysForNew(const std::string &node,
+                                                       const MemberRequest *signing) const
 {
-    CheckNodeName(request.Node);
-    const std::string folder = FolderOf(request.Node);
+    CheckNodeName(node);
+    const std::string folder = FolderOf(node);
     if (std::filesystem::exists(folder))
     {
         throw KeysError(folder + " is there already: nothing is changed; `rabit keys renew` makes new ones");
     }
+    return KeysFor(node, signing);
+}
+
+void FleetAuthority::CheckAdd(const std::vector<MemberRequest> &requests) const
+{
+    for (auto one = requests.begin(); one != requests.end(); ++one)
+    {
+        static_cast<void>(KeysForNew(one->Node, &*one));
+        for (auto other = requests.begin(); other != one; ++other)
+        {
+            if (one->Node == other->Node)
+            {
+                throw KeysError("two of the requests are of `" + one->Node + "`: nothing is signed");
+            }
+            if (one->Keys.Signing == other->Keys.Signing || one->Keys.Agreement == other->Keys.Agreement)
+            {
+                throw KeysError("the requests of " + other->Node + " and " + one->Node +
+                                " have the same key: each node needs its own");
+            }
+        }
+    }
+}
+
+void FleetAuthority::Add(const Request &request, const Period &period, const MemberRequest *signing) const
+{
+    const std::optional<MemberPublic> keys = KeysForNew(request.Node, signing);
     const std::string made = NewFolderOf(_folder, request.Node);
-    Make(made, request, period, KeysFor(request.Node, signing));
-    MoveFolder(made, folder);
+    Make(made, request, period, keys);
+    MoveFolder(made, FolderOf(request.Node));
 }
 
 void FleetAuthority::Renew(const Request &request, const Period &period, const MemberRequest *signing) const
@@ -399,7 +317,7 @@ void FleetAuthority::WriteToNodes(const std::string &bulletins) const
 std::size_t FleetAuthority::RevokeAll(const std::vector<Envelope::Certificate> &certificates,
                                       std::time_t now) const
 {
-    std::vector<Envelope::Serial> revoked = RevokedSerials();
+    std::vector<Envelope::Serial> revoked = _records.Revoked();
     const std::size_t before = revoked.size();
     for (const Envelope::Certificate &one : certificates)
     {
@@ -408,15 +326,15 @@ std::size_t FleetAuthority::RevokeAll(const std::vector<Envelope::Certificate> &
             revoked.push_back(one.Number);
         }
     }
-    Bulletins published = Published();
+    Bulletins published = _records.Published();
     if (revoked.size() != before)
     {
         const Envelope::Epoch present = published.rbegin()->first;
-        if (present == std::numeric_limits<Envelope::Epoch>::max())
+        if (present + 1 >= Envelope::EpochOfCalls)
         {
             throw KeysError("no epoch is left: make a new fleet");
         }
-        std::vector<Envelope::Certificate> remaining = Issued();
+        std::vector<Envelope::Certificate> remaining = _records.Issued();
         std::map<std::string, Envelope::Serial> newest;
         for (const Envelope::Certificate &one : remaining)
         {
@@ -428,7 +346,7 @@ std::size_t FleetAuthority::RevokeAll(const std::vector<Envelope::Certificate> &
         published[next] = NewBulletin(next, revoked, NodesOf(remaining, revoked), RandomSecret(),
                                       Key().Agreement, Key().Signing);
         KeepNewest(published);
-        WriteFile(Place(BulletinFile), TextOf(published));
+        _records.Publish(TextOf(published));
     }
     // Also if nothing is new: the revocation before may have been cut short.
     WriteToNodes(TextOf(published));
@@ -439,7 +357,7 @@ std::size_t FleetAuthority::RevokeOlder(const std::string &node, std::time_t now
 {
     CheckNodeName(node);
     const MemberFolder folder(FolderOf(node), KeyPlace::HereOrOnNode);
-    std::vector<Envelope::Certificate> older = IssuedTo(node);
+    std::vector<Envelope::Certificate> older = _records.IssuedTo(node);
     std::erase_if(older, [&folder](const auto &one) { return one.Number == folder.Certificate().Number; });
     CheckKeepsNoKey(older, node, KeysOf(folder.Certificate()));
     return RevokeAll(older, now);
@@ -448,7 +366,7 @@ std::size_t FleetAuthority::RevokeOlder(const std::string &node, std::time_t now
 std::size_t FleetAuthority::Revoke(const std::string &node, std::time_t now) const
 {
     CheckNodeName(node);
-    const std::vector<Envelope::Certificate> certificates = IssuedTo(node);
+    const std::vector<Envelope::Certificate> certificates = _records.IssuedTo(node);
     if (certificates.empty())
     {
         throw KeysError("no certificate was ever made for " + node + " in " + _folder);

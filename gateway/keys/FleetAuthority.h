@@ -12,7 +12,7 @@
 #include "envelope/Permissions.h"
 #include "envelope/SigningKey.h"
 #include "keys/BulletinStore.h"
-#include "keys/MemberFiles.h"
+#include "keys/FleetRecords.h"
 #include "keys/MemberRequest.h"
 #include "keys/MemberSecrets.h"
 #include "keys/NodeFolders.h"
@@ -43,7 +43,7 @@ public:
 
     // Makes the folder, the authority and epoch 1. Encrypts the private key, unless the passphrase is empty.
     static void Init(const std::string &folder, std::string_view passphrase = {});
-    // True if the folder has an authority of this kind.
+    // True if the folder has an authority.
     static bool IsIn(const std::string &folder);
 
     // `ask` is called before the first signature, if the private key of the authority is encrypted.
@@ -52,7 +52,7 @@ public:
     // The nodes that have a folder.
     std::vector<std::string> Nodes() const;
     // The nodes whose certificates are all revoked.
-    std::vector<std::string> Revoked() const;
+    std::vector<std::string> Revoked() const { return _records.RevokedNodes(); }
     std::string FolderOf(const std::string &node) const { return _folder + "/" + node; }
     Envelope::Epoch Epoch() const;
     // The request from which the node's present keys were made.
@@ -62,6 +62,8 @@ public:
     // node, too: the other nodes need not hear of it. With `signing`, a request of that node, the folder has
     // no private key: the node has it.
     void Add(const Request &request, const Period &period, const MemberRequest *signing = nullptr) const;
+    // Throws unless Add takes each of these requests, one after the other.
+    void CheckAdd(const std::vector<MemberRequest> &requests) const;
     // Replaces the node's certificate and permissions by new ones, and its keys by new ones or by those of
     // `signing`. Without `signing`, a node whose folder has no private key keeps its keys. The old ones stay
     // good until they are revoked.
@@ -86,18 +88,13 @@ private:
     };
 
     static Opened Open(const Envelope::SecretKey &seed);
-    std::string Place(const std::string &name) const;
     Opened &Key() const;
-    Bulletins Published() const;
-    std::vector<Envelope::Serial> RevokedSerials() const;
-    // Every certificate that was made, by rising serials.
-    std::vector<Envelope::Certificate> Issued() const;
-    std::vector<Envelope::Certificate> IssuedTo(const std::string &node) const;
-    void CheckFresh(const std::string &node, const MemberPublic &keys) const;
-    void CheckKeepsNoKey(const std::vector<Envelope::Certificate> &older, const std::string &node,
-                         const MemberPublic &keys) const;
+    static void CheckKeepsNoKey(const std::vector<Envelope::Certificate> &older, const std::string &node,
+                                const MemberPublic &keys);
     // Returns the keys, which are fresh, that the node's next certificate will have; empty: new ones.
     std::optional<MemberPublic> KeysFor(const std::string &node, const MemberRequest *signing) const;
+    // The same for a node that must not have a folder yet.
+    std::optional<MemberPublic> KeysForNew(const std::string &node, const MemberRequest *signing) const;
     void Make(const std::string &folder, const Request &request, const Period &period,
               const std::optional<MemberPublic> &known) const;
     // Returns all bulletins that the authority keeps, each with a secret for every certificate of these that
@@ -109,8 +106,8 @@ private:
     const std::string _folder;
     const AskPassphrase _ask;
     const FleetLock _lock;
+    const FleetRecords _records;
     mutable std::optional<Opened> _key;  // read when first needed
-    Envelope::PublicKey _public{};
 };
 
 }  // namespace Rabit::Keys

@@ -67,14 +67,18 @@ std::vector<KeysFinding> WhatEnds(const Envelope::Certificate &certificate, std:
     }
     if (now > ends)
     {
-        return {{true, "ended on " + UtcText(ends, DayFormat) + "; renew it"}};
+        return {{true, "ended on " + EndOf(certificate) + "; renew it"}};
     }
     if (left < days)
     {
-        return {{true,
-                 "ends on " + UtcText(ends, DayFormat) + ", in " + std::to_string(left) + " days; renew it"}};
+        return {{true, "ends on " + EndOf(certificate) + ", in " + std::to_string(left) + " days; renew it"}};
     }
     return {};
+}
+
+std::string EndOf(const Envelope::Certificate &certificate)
+{
+    return UtcText(static_cast<std::time_t>(certificate.Ends), DayFormat);
 }
 
 std::vector<std::string> WhoMayWhat(const Envelope::Permissions &allowed)

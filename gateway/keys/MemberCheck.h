@@ -18,6 +18,9 @@ std::vector<KeysFinding> WhatIsTooMuch(const Envelope::Certificate &certificate,
 // Finds a certificate that has not begun, has ended, or ends within `days` days. Nodes go on with it.
 std::vector<KeysFinding> WhatEnds(const Envelope::Certificate &certificate, std::time_t now, int days);
 
+// The day on which a certificate ends, in UTC: `2027-11-23`.
+std::string EndOf(const Envelope::Certificate &certificate);
+
 // Lists the permissions in words, one line each: `writes Pose, MissionState`, `reads everything`.
 std::vector<std::string> WhoMayWhat(const Envelope::Permissions &allowed);
 

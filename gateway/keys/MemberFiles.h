@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 namespace Rabit::Keys
@@ -16,13 +15,6 @@ struct MemberFiles
           Bulletin(folder + "/bulletin"),
           Key(folder + "/key")
     {
-    }
-
-    // True if the folder has keys of this format, or the key of a node that made a request.
-    static bool AreIn(const std::string &folder)
-    {
-        const MemberFiles files(folder);
-        return std::filesystem::exists(files.Certificate) || std::filesystem::exists(files.Key);
     }
 
     std::string Certificate;

@@ -11,6 +11,8 @@
 #include "keys/KeyFiles.h"
 #include "keys/KeysError.h"
 #include "keys/MemberPermissions.h"
+#include "keys/NodeFolders.h"
+#include "keys/NodeName.h"
 
 namespace Rabit::Keys
 {
@@ -33,6 +35,12 @@ MemberFolder::MemberFolder(const std::string &folder, KeyPlace place, std::strin
     if (!std::filesystem::is_directory(folder))
     {
         throw KeysError("there is no folder of keys " + folder + "; `rabit keys add` makes one");
+    }
+    CheckFormat(folder);
+    if (std::filesystem::is_directory(folder + "/" + AuthorityFolder))
+    {
+        throw KeysError(folder + " is the folder of a fleet; name the folder of one node in it, as " +
+                        folder + "/NODE");
     }
     if (!std::filesystem::exists(_files.Certificate))
     {
@@ -131,7 +139,9 @@ std::string MemberFolder::WhyNot(const std::string &node) const
     }
     if (_isRevoked)
     {
-        return file + " is revoked; `rabit keys renew` makes a new one";
+        return file +
+               " is revoked; make new keys with `rabit keys add`, or another request with "
+               "`rabit keys request` after removing the key";
     }
     if (HasKey() && Readable().count(Epoch()) == 0)
     {
@@ -158,7 +168,8 @@ MemberKeys MemberFolder::Keys() const
     {
         keys.Bulletins.push_back(bytes);
     }
-    const auto store = std::make_shared<BulletinStore>(_files.Bulletin, _stored, _bulletins);
+    const auto store =
+        std::make_shared<BulletinStore>(_files.Bulletin, _stored, _bulletins, VerifyingKeyOf(_authority));
     keys.Store = [store](std::uint16_t epoch, std::span<const std::uint8_t> bulletin)
     { return store->Add(epoch, bulletin); };
     return keys;

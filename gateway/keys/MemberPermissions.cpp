@@ -11,16 +11,16 @@ namespace Rabit::Keys
 namespace
 {
 
-void AllowTopics(const std::vector<TopicAccess> &topics, bool Envelope::Permissions::Rule::*what,
+void AllowTopics(const std::vector<std::string> &topics, bool Envelope::Permissions::Rule::*what,
                  std::vector<Envelope::Permissions::Rule> &rules)
 {
-    for (const TopicAccess &access : topics)
+    for (const std::string &topic : topics)
     {
         auto rule = std::find_if(rules.begin(), rules.end(),
-                                 [&access](const auto &one) { return one.Topic == access.Topic; });
+                                 [&topic](const auto &one) { return one.Topic == topic; });
         if (rule == rules.end())
         {
-            rule = rules.insert(rules.end(), Envelope::Permissions::Rule{.Topic = access.Topic});
+            rule = rules.insert(rules.end(), Envelope::Permissions::Rule{.Topic = topic});
         }
         (*rule).*what = true;
     }
@@ -49,18 +49,18 @@ std::vector<std::string> Lacks(const Envelope::Permissions &list, Envelope::Cert
                                const Access &access)
 {
     std::vector<std::string> lacks;
-    for (const TopicAccess &topic : access.Publish)
+    for (const std::string &topic : access.Publish)
     {
-        if (!list.MayWrite(topic.Topic, role))
+        if (!list.MayWrite(topic, role))
         {
-            lacks.push_back("write " + topic.Topic);
+            lacks.push_back("write " + topic);
         }
     }
-    for (const TopicAccess &topic : access.Subscribe)
+    for (const std::string &topic : access.Subscribe)
     {
-        if (!list.MayRead(topic.Topic))
+        if (!list.MayRead(topic))
         {
-            lacks.push_back("read " + topic.Topic);
+            lacks.push_back("read " + topic);
         }
     }
     return lacks;

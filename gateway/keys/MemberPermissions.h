@@ -9,8 +9,8 @@
 namespace Rabit::Keys
 {
 
-// Returns the list that allows exactly these topics. Domain and partitions are not part of a list: names are
-// bound to certificates. Throws KeysError if there are too many topics.
+// Returns the list that allows exactly these topics. Partitions are not part of a list: names are bound to
+// certificates. Throws KeysError if there are too many topics.
 Envelope::Permissions PermissionsFor(const Access &access);
 
 // Returns the topics of `access` that the list does not allow, each as `write Pose` or `read Pose`.

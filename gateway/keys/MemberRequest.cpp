@@ -11,6 +11,7 @@
 #include "keys/KeyFiles.h"
 #include "keys/KeysError.h"
 #include "keys/MemberFiles.h"
+#include "keys/NodeFolders.h"
 #include "keys/NodeName.h"
 
 namespace Rabit::Keys
@@ -62,6 +63,12 @@ MemberRequest ReadMemberRequest(std::string_view text, const std::string &file)
     {
         throw KeysError(file + " is larger than 16 KiB: no request of a node");
     }
+    if (text.find("-----BEGIN CERTIFICATE REQUEST-----") != std::string_view::npos)
+    {
+        throw KeysError(file +
+                        " is a request of a former format, which nothing reads any more; make another one "
+                        "with `rabit keys request` in another folder of the node");
+    }
     const Bytes bytes = BlockIn(text, RequestLabel, file);
     const std::span<const std::uint8_t> all(bytes);
     if (all.size() < FixedRequestSize || all[0] != RequestFormat ||
@@ -101,9 +108,10 @@ MemberRequest ReadMemberRequest(std::string_view text, const std::string &file)
 RequestedMember RequestMember(const std::string &folder, const std::string &node)
 {
     CheckNodeName(node);
+    CheckFormat(folder);
     if (std::filesystem::is_directory(folder + "/" + AuthorityFolder))
     {
-        throw KeysError(folder + " has the authorities of a fleet; name another folder for the node's keys");
+        throw KeysError(folder + " has the authority of a fleet; name another folder for the node's keys");
     }
     if (!std::filesystem::exists(folder))
     {

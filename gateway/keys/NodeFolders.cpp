@@ -21,11 +21,12 @@ constexpr const char *OldFolderEnding = ".old";
 
 int LockedFolder(const std::string &fleet)
 {
+    CheckFormat(fleet);
     const int lock = ::open((fleet + "/" + AuthorityFolder).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock < 0)
     {
-        throw KeysError("there are no authorities of a fleet in " + fleet + "; `rabit keys init " + fleet +
-                        "` makes them");
+        throw KeysError("there is no authority of a fleet in " + fleet + "; `rabit keys init " + fleet +
+                        "` makes one");
     }
     if (::flock(lock, LOCK_EX | LOCK_NB) != 0)
     {
@@ -41,6 +42,19 @@ std::string FormerFolderOf(const std::string &fleet, const std::string &node)
 }
 
 }  // namespace
+
+void CheckFormat(const std::string &folder)
+{
+    for (const std::string file : {"/authority/identity.pem", "/certificate.pem", "/private_key.pem"})
+    {
+        if (std::filesystem::exists(folder + file))
+        {
+            throw KeysError(folder +
+                            " has keys of a former format, which nothing reads any more; make a new fleet in "
+                            "another folder with `rabit keys init`, and its nodes with `rabit keys add`");
+        }
+    }
+}
 
 FleetLock::FleetLock(const std::string &fleet) : _descriptor(LockedFolder(fleet)) {}
 

@@ -1,5 +1,4 @@
-// The folder of a fleet: one folder for the authorities, and one for each node, which are replaced as a
-// whole.
+// The folder of a fleet: one folder for the authority, and one for each node, which are replaced as a whole.
 #pragma once
 
 #include <string>
@@ -10,11 +9,15 @@ namespace Rabit::Keys
 
 // All functions throw KeysError.
 
+// Throws if the folder, of a fleet or of a node, has files of a former format, which was X.509. Nothing reads
+// these any more.
+void CheckFormat(const std::string &folder);
+
 // Locks the folder of a fleet: at most one program changes it at a time.
 class FleetLock
 {
 public:
-    // Throws if the folder has no authorities, or if somebody else has the lock.
+    // Throws if the folder has no authority, or keys of a former format, or if somebody else has the lock.
     explicit FleetLock(const std::string &fleet);
     ~FleetLock();
     FleetLock(const FleetLock &) = delete;
@@ -33,7 +36,7 @@ std::string NewFolderOf(const std::string &fleet, const std::string &node);
 void ReplaceFolder(const std::string &fleet, const std::string &node);
 void FinishReplacements(const std::string &fleet);
 
-// The names of the folders that have a file of that name, sorted, without that of the authorities.
+// The names of the folders that have a file of that name, sorted, without that of the authority.
 std::vector<std::string> FoldersWith(const std::string &fleet, const std::string &file);
 
 }  // namespace Rabit::Keys

@@ -40,15 +40,4 @@ std::string TextOf(BIO &bio)
     return size > 0 ? std::string(data, static_cast<std::size_t>(size)) : std::string();
 }
 
-std::string TextOf(const X509_NAME_ENTRY *entry)
-{
-    if (entry == nullptr)
-    {
-        return {};
-    }
-    const ASN1_STRING *text = X509_NAME_ENTRY_get_data(entry);
-    return {reinterpret_cast<const char *>(ASN1_STRING_get0_data(text)),
-            static_cast<std::size_t>(ASN1_STRING_length(text))};
-}
-
 }  // namespace Rabit::Keys

@@ -3,7 +3,6 @@
 
 #include <openssl/bio.h>
 #include <openssl/evp.h>
-#include <openssl/pkcs7.h>
 #include <openssl/x509.h>
 
 #include <memory>
@@ -28,12 +27,7 @@ struct FreedBy
 using KeyPtr = std::unique_ptr<EVP_PKEY, FreedBy<&EVP_PKEY_free>>;
 using CertificatePtr = std::unique_ptr<X509, FreedBy<&X509_free>>;
 using NamePtr = std::unique_ptr<X509_NAME, FreedBy<&X509_NAME_free>>;
-using RevocationsPtr = std::unique_ptr<X509_CRL, FreedBy<&X509_CRL_free>>;
-using StorePtr = std::unique_ptr<X509_STORE, FreedBy<&X509_STORE_free>>;
-using Pkcs7Ptr = std::unique_ptr<PKCS7, FreedBy<&PKCS7_free>>;
 using BioPtr = std::unique_ptr<BIO, FreedBy<&BIO_free_all>>;
-using IntegerPtr = std::unique_ptr<ASN1_INTEGER, FreedBy<&ASN1_INTEGER_free>>;
-using TimePtr = std::unique_ptr<ASN1_TIME, FreedBy<&ASN1_TIME_free>>;
 
 // For OpenSSL's readers, in place of the default, which asks at the terminal: no passphrase is given.
 int NoPassphrase(char *buffer, int size, int isNew, void *data);
@@ -56,7 +50,5 @@ Result Must(Result &&result, const char *what)
 BioPtr BioOf(std::string_view text);
 BioPtr EmptyBio();
 std::string TextOf(BIO &bio);
-// The text of an entry of a name; empty if there is none.
-std::string TextOf(const X509_NAME_ENTRY *entry);
 
 }  // namespace Rabit::Keys

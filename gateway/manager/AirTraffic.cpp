@@ -28,9 +28,6 @@ constexpr std::size_t SmallBeat = BeatFormat::WithNews + 72;
 // A beat may ride by this part of its period before it is promised.
 constexpr int EarlyPart = 5;
 
-// Share of a budget that the exchange of keys may take, so that beats get through meanwhile.
-constexpr double KeyShare = 0.5;
-
 // Share of a budget that copies of States and telemetry leave free, but for one datagram: half of a small
 // budget with it.
 constexpr double KeptShare = 0.6;
@@ -74,7 +71,6 @@ void AirTraffic::TakeTurns(TransportSession &session, std::function<void()> wake
     if (_turns != nullptr)
     {
         _turns->Schedule(std::move(wakeUp));
-        _turns->SetKeyRate(KeyShare * _config.Radio.Budget.value_or(0.0));
     }
 }
 

@@ -41,7 +41,6 @@ namespace Rabit
 //   when its turn has come, from the newest data.
 // - Each datagram is paid for with the bytes that the transport counted for it. DDS's own traffic is paid
 //   for, too, and a part of a budget is kept free for it when it is due.
-// - With a budget the exchange of keys may take half of it (DiscoveryTurns::SetKeyRate).
 // - With a budget, streams that are ready ride in the datagram of the chosen one (AirSchedule::NextRider), as
 //   far as the session merges datagrams (TransportSession::BeginTurn).
 // - Where the estimate is the only limit, a due beat does not wait.

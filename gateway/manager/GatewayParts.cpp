@@ -214,16 +214,9 @@ void GatewayManager::Parts::OpenSession()
 {
     _isOpen = true;
     _openedAt = Now();
-    // Cyclone DDS checks keys only in the first session of a process.
-    for (const bool withKeys : {true, false})
+    for (const auto &path : _paths)
     {
-        for (const auto &path : _paths)
-        {
-            if (path->HasKeys() == withKeys)
-            {
-                path->Join();
-            }
-        }
+        path->Join();
     }
     for (const auto &path : _paths)
     {

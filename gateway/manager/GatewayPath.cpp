@@ -41,7 +41,7 @@ GatewayPath::GatewayPath(GatewayConfig config, std::shared_ptr<Rabit::Transport>
 void GatewayPath::Join()
 {
     TransportSettings settings = TransportSettingsOf(_config, _shared.Incarnation);
-    _keysEndAt = AddSecurity(_config, _transport->Name(), settings, _shared.Members);
+    AddSecurity(_config, settings, _shared.Members);
     _session = _transport->Open(settings, [this](const PeerEvent &event) { _presence.OnPeer(event); });
     _air.TakeTurns(*_session, _shared.WakeUp);
 }
@@ -121,10 +121,6 @@ void GatewayPath::AddProblems(Gateway::Fleet &fleet, Duration now) const
     {
         lonely->subject = Name().empty() ? lonely->subject : "path " + Name();
         fleet.problems.push_back(std::move(*lonely));
-    }
-    if (auto ending = KeysProblem(_keysEndAt, std::time(nullptr)))
-    {
-        fleet.problems.push_back(std::move(*ending));
     }
     FleetReport::AddNetworkProblems(_session->NetworkProblems(), fleet);
     const std::vector<Gateway::Problem> ofBeats = _presence.Problems(now);

@@ -9,11 +9,9 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <ctime>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "clocks/SourceClock.h"
@@ -68,9 +66,8 @@ public:
     GatewayPath(GatewayConfig config, std::shared_ptr<Rabit::Transport> transport, std::size_t number,
                 const Shared &shared);
 
-    // Joins the network. Throws TransportError, and ConfigError for the keys.
+    // Joins the network. Throws TransportError.
     void Join();
-    bool HasKeys() const { return _config.Security.has_value(); }
     // Once all paths have joined, in their order. Throws TransportError.
     void Open();
     // Once all paths are open.
@@ -150,7 +147,6 @@ private:
     TypeExchange _types;
     AirTraffic _air;
     Duration _openedAt{0};
-    std::optional<std::time_t> _keysEndAt;
 };
 
 }  // namespace Rabit

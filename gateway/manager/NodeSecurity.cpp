@@ -8,7 +8,6 @@
 
 #include "keys/KeysError.h"
 #include "keys/MemberFolder.h"
-#include "keys/NodeKeys.h"
 #include "names/ForeignNames.h"
 #include "wire/GatewayTopics.h"
 
@@ -36,35 +35,38 @@ std::string DoesNotAllow(const std::string &permissions, const std::vector<std::
 
 Keys::Access AccessOf(const GatewayConfig &config)
 {
-    const std::vector<std::string> defaultPartition{""};
     Keys::Access access;
-    access.Domain = config.Domain;
-    access.Publish = {{GatewayTopics::Beat, defaultPartition}, {GatewayTopics::Link, defaultPartition}};
+    access.Publish = {GatewayTopics::Beat, GatewayTopics::Link};
     if (config.Tool)
     {
         // A tool reads every topic that it is asked to.
-        access.Subscribe = {{"*", {"", "*"}}};
+        access.Subscribe = {"*"};
         return access;
     }
     access.Subscribe = access.Publish;
     for (const PublishRule &rule : config.Publish)
     {
-        access.Publish.push_back({rule.Message, {"", config.Node}});
+        access.Publish.push_back(rule.Message);
     }
     for (const SubscribeRule &rule : config.Subscribe)
     {
-        access.Subscribe.push_back({rule.Message, rule.From});
+        access.Subscribe.push_back(rule.Message);
     }
     for (const ForeignRule &rule : config.Foreign)
     {
         (rule.Way == ForeignRule::Direction::Publish ? access.Publish : access.Subscribe)
-            .push_back({WireTopicOf(rule), defaultPartition});
+            .push_back(WireTopicOf(rule));
     }
     return access;
 }
 
 std::shared_ptr<FleetMember> NodeMembers::Of(const GatewayConfig &config)
 {
+    if (config.Security->Member)
+    {
+        _given.insert(config.Security->Member);
+        return config.Security->Member;
+    }
     const std::string &folder = config.Security->Keys;
     const std::string stored =
         config.StateDir.empty() ? "" : config.StateDir + "/" + config.Node + ".bulletin";
@@ -115,54 +117,25 @@ std::vector<SettingsProblem> NodeMembers::Problems(std::time_t now) const
             problems.push_back(std::move(problem));
         }
     }
+    for (const auto &member : _given)
+    {
+        for (SettingsProblem &problem : member->Problems())
+        {
+            problems.push_back(std::move(problem));
+        }
+    }
     return problems;
 }
 
-std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::string &transport,
-                                       TransportSettings &settings, NodeMembers &members)
+void AddSecurity(const GatewayConfig &config, TransportSettings &settings, NodeMembers &members)
 {
     if (!config.Security)
     {
-        return std::nullopt;
+        return;
     }
-    const auto fail = [](const std::string &why) { throw TransportError(why, "security"); };
     try
     {
-        if (Keys::MemberFiles::AreIn(config.Security->Keys))
-        {
-            if (config.Security->Level == SecurityLevel::Sign)
-            {
-                fail("there is no `level: sign` with the keys in " + config.Security->Keys +
-                     ": everything is encrypted; remove `level`");
-            }
-            settings.Member = members.Of(config);
-            return std::nullopt;
-        }
-        const Keys::NodeKeys keys(config.Security->Keys);
-        if (const std::string why = keys.WhyNot(config.Node, transport, config.Domain, std::time(nullptr));
-            !why.empty())
-        {
-            fail(why);
-        }
-        if (const auto lacks = keys.Lacks(AccessOf(config)); !lacks.empty())
-        {
-            fail(DoesNotAllow(keys.Files().Permissions, lacks, config.Tool.has_value()));
-        }
-        const Keys::NodeFiles &files = keys.Files();
-        const bool encrypts = config.Security->Level == SecurityLevel::Encrypt;
-        settings.Security = {
-            .IdentityAuthority = files.IdentityAuthority,
-            .PermissionsAuthority = files.PermissionsAuthority,
-            .Certificate = files.Certificate,
-            .PrivateKey = files.PrivateKey,
-            .Revoked = files.Revoked,
-            .Governance = files.Governance(encrypts ? Keys::Level::Encrypt : Keys::Level::Sign),
-            .Permissions = files.Permissions,
-            .Encrypts = encrypts,
-            .MayBe = [fleet = keys.Subject().Fleet](std::string_view node,
-                                                    std::span<const std::uint8_t, 12> guidPrefix)
-            { return Keys::IsGuidOf(fleet, node, guidPrefix); }};
-        return keys.ValidityOf().To;
+        settings.Member = members.Of(config);
     }
     catch (const Keys::KeysError &error)
     {
@@ -174,22 +147,6 @@ std::optional<std::time_t> AddSecurity(const GatewayConfig &config, const std::s
             "the folder of keys " + config.Security->Keys + " cannot be read: " + error.code().message(),
             "security");
     }
-}
-
-std::optional<Gateway::Problem> KeysProblem(std::optional<std::time_t> endsAt, std::time_t now)
-{
-    if (!endsAt || *endsAt - now > AheadOfTheEnd)
-    {
-        return std::nullopt;
-    }
-    return Gateway::Problem{
-        "keys", "",
-        "the certificate of this node " +
-            (now > *endsAt
-                 ? "ended on " + Keys::DayText(*endsAt) + ": who comes now does not let it in"
-                 : "ends on " + Keys::DayText(*endsAt) + ": from then on who comes does not let it in") +
-            "; `rabit keys renew` makes a new one",
-        true};
 }
 
 }  // namespace Rabit

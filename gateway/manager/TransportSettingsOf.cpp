@@ -61,7 +61,7 @@ std::vector<std::string> CheckTransportSettings(const GatewayConfig &config, con
     try
     {
         NodeMembers members;
-        AddSecurity(config, transport.Name(), settings, members);
+        AddSecurity(config, settings, members);
     }
     catch (const TransportError &error)
     {

@@ -25,7 +25,7 @@ TypeExchange::TypeExchange(const GatewayConfig &config, Presence &presence, Link
       _wake(std::move(wake)),
       _onText(std::move(onText)),
       _reportOf(std::move(reportOf)),
-      _largestFrame(LargestLinkFrame(config.MaxDatagram, config.Security.has_value())),
+      _largestFrame(LargestLinkFrame(config.MaxDatagram, SomePathHasKeys(config))),
       _answers([this](std::uint64_t definition) { return TextOf(definition); })
 {
     _links.SetOtherFrames(_path, TypeFrames::FirstByte,

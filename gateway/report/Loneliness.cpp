@@ -46,13 +46,9 @@ std::string WhatSharedMemoryNeeds(const GatewayConfig &config)
                                : "";
 }
 
-// Until then nothing of another node gets to the gateway, however much is heard.
 std::string WhatKeysNeed(const GatewayConfig &config)
 {
-    return config.Security
-               ? "; with keys, a node is heard once both have exchanged theirs, which takes longer "
-                 "on a slow channel"
-               : "";
+    return SomePathHasKeys(config) ? "; with keys, only nodes of the same fleet are heard" : "";
 }
 
 // True if foreign programs may be all that the node is there for.

@@ -2,7 +2,6 @@
 
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/LoadGatewayConfig.h>
-#include <rabit/transport/TransportFactory.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -11,7 +10,6 @@
 #include <array>
 
 #include "keys/MemberFolder.h"
-#include "keys/NodeKeys.h"
 
 namespace Rabit::Tool
 {
@@ -95,47 +93,6 @@ void TakeOneValueEach(CLI::App &app)
     }
 }
 
-namespace
-{
-
-// Without a configuration file, the keys give the tool's name, and those of the former format domain and
-// transport.
-void TakeFromKeys(const CommonOptions &options, GatewayConfig &config)
-{
-    if (Keys::MemberFiles::AreIn(config.Security->Keys))
-    {
-        if (options.Node.Node.empty())
-        {
-            config.Node = Keys::MemberFolder(config.Security->Keys).Certificate().Name;
-        }
-        return;
-    }
-    const Keys::NodeKeys keys(config.Security->Keys);
-    if (options.Node.Node.empty())
-    {
-        config.Node = keys.Subject().Node;
-    }
-    if (!options.Node.ConfigFile.empty())
-    {
-        return;
-    }
-    const auto &rules = keys.Permissions().Rules;
-    if (options.Node.Domain < 0 && !rules.empty() && !rules.front().Domains.empty())
-    {
-        config.Domain = rules.front().Domains.front().first;
-    }
-    const std::vector<std::string> transports = AvailableTransports();
-    const auto fits = [&](const std::string &transport)
-    { return Keys::WantsSmallGuid(transport) == Keys::HasSmallGuid(keys.Subject()); };
-    if (const auto found = std::find_if(transports.begin(), transports.end(), fits);
-        options.Node.Transport.empty() && found != transports.end())
-    {
-        config.Transport = *found;
-    }
-}
-
-}  // namespace
-
 GatewayConfig ConfigOf(const CommonOptions &options)
 {
     GatewayConfig config = LoadNetworkConfig(options.Node);
@@ -144,9 +101,15 @@ GatewayConfig ConfigOf(const CommonOptions &options)
         UseInterfaces(options.Interfaces, config);
     }
     config.Node = options.Node.Node.empty() ? OwnName() : options.Node.Node;
-    if (config.Security)
+    if (options.Node.Node.empty())
     {
-        TakeFromKeys(options, config);
+        const std::vector<GatewayConfig> paths = PathConfigsOf(config);
+        const auto with = std::find_if(paths.begin(), paths.end(),
+                                       [](const GatewayConfig &path) { return path.Security.has_value(); });
+        if (with != paths.end())
+        {
+            config.Node = Keys::MemberFolder(with->Security->Keys).Certificate().Name;
+        }
     }
     config.StateDir.clear();
     config.Tool.emplace();

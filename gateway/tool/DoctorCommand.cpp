@@ -87,7 +87,7 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
     {
         // NetworkTrial listens before DDS does, so that no answer is missed.
         const Doctor::NetworkTrial trial(used, Doctor::UnusedBy(config, before.Interfaces), config.Node,
-                                         domains, AllDomains());
+                                         domains, AllDomains(), Doctor::OwnSealedSessions(config));
         FleetSession session(config, options, wakeup);
         double listened = options.Wait;
         session.WaitUntil(listened);
@@ -96,10 +96,6 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
             // The reason may be a domain that is only listened to.
             listened = AllAnnounced;
             session.WaitUntil(listened);
-        }
-        if (!options.IsWaitGiven)
-        {
-            session.WaitUntil(session.Patience(), [&session] { return session.Underway().empty(); });
         }
         if (wakeup.IsInterrupted())
         {
@@ -125,7 +121,7 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfOtherParticipants(config, network, names));
         Append(findings, Doctor::OfDomains(config, network, anyNode));
         Append(findings, Doctor::OfSilentDomains(config, network, anyNode, CommonDomains, listened));
-        Append(findings, Doctor::OfKeys(config, network, session.Heard()));
+        Append(findings, Doctor::OfKeys(config, used, network, anyNode));
         Append(findings, Doctor::OfNodes(nodes, fleet));
         Append(findings, Doctor::OfPaths(fleet, session.Seconds()));
         Append(findings, Doctor::OfTypes(nodes));

@@ -167,7 +167,7 @@ public:
                 Output::Talk(_options.Node + ": " + _fetch.Refusal());
                 return ProblemFound;
             }
-            if (!_wasAccepted && _session.Seconds() >= _session.Patience())
+            if (!_wasAccepted && _session.Seconds() >= _options.Common.Wait)
             {
                 Output::Talk(_options.Node +
                              " sends no files: its configuration has no `fetch`, or it cannot be reached");

@@ -7,8 +7,6 @@
 #include <rabit/transport/TransportFactory.h>
 
 #include <algorithm>
-#include <iterator>
-#include <set>
 
 #include "Offers.h"
 #include "Output.h"
@@ -16,7 +14,6 @@
 #include "doctor/MachineChecks.h"
 #include "doctor/NetworkChecks.h"
 #include "doctor/NetworkTrial.h"
-#include "names/ListedNames.h"
 
 namespace Rabit::Tool
 {
@@ -26,11 +23,8 @@ namespace
 
 // Seconds in which nodes that do not save on beats are heard.
 constexpr double Everybody = 1.5;
-// Seconds in which nodes without a budget announce themselves twice to a newcomer. With keys a node is heard
-// only once it is authenticated, but its announcements come before.
-constexpr double TwoAnnouncements = 2.2;
-// Seconds that are added for handshakes: on a busy computer one takes seconds, and they go one after another.
-constexpr double Handshakes = 15.0;
+// Seconds in which NetworkTrial calls nodes with keys, and they answer.
+constexpr double AnswersToCalls = 2.2;
 // Seconds that are added for answers: a node may be answering others.
 constexpr double Answers = 3.0;
 
@@ -38,7 +32,7 @@ constexpr double Answers = 3.0;
 // bound to a certificate that no node has.
 void CheckOwnName(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup)
 {
-    if (!config.Tool || config.Security || config.Node != options.Node.Node)
+    if (!config.Tool || SomePathHasKeys(config) || config.Node != options.Node.Node)
     {
         return;
     }
@@ -65,10 +59,6 @@ FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &opt
 {
     CheckOwnName(config, options, wakeup);
     _start = std::chrono::steady_clock::now();
-    if (config.Security)
-    {
-        _announcements = Listen({});
-    }
     // The commands themselves report the gateway's warnings where they matter, so these are logged only with
     // --verbose.
     RabitLog::SetLevel(options.Verbose ? RabitLogLevel::Warning : RabitLogLevel::Error);
@@ -136,95 +126,34 @@ bool FleetSession::WaitUntilDecided(const std::function<bool()> &isDecided)
 {
     // The nodes that are heard meanwhile may announce longer periods.
     bool hasEnded = false;
-    for (double until = 0.0; !hasEnded && until < Patience();)
+    for (double until = 0.0; !hasEnded && until < _options.Wait;)
     {
-        const double everybody = SecondsToHearEverybody();
-        until = everybody > until ? std::min(everybody, Patience()) : Patience();
+        const double everybody = Offers::SecondsToHearEverybody(Nodes());
+        until = everybody > until ? std::min(everybody, _options.Wait) : _options.Wait;
         hasEnded = WaitUntil(until, isDecided);
-        if (Seconds() >= _options.Wait && Underway().empty() && !IsAnybodyThere())
-        {
-            break;
-        }
     }
     return hasEnded;
 }
 
 void FleetSession::WaitForEverybody(const std::function<bool()> &isWhole)
 {
-    const auto ends = [&] { return Underway().empty() && IsAnybodyThere() && isWhole(); };
-    const double least = _announcements ? TwoAnnouncements : Everybody;
-    WaitUntil(_options.IsWaitGiven ? std::min(least, _options.Wait) : least,
+    const auto ends = [&] { return IsAnybodyThere() && isWhole(); };
+    WaitUntil(_options.IsWaitGiven ? std::min(Everybody, _options.Wait) : Everybody,
               [&] { return !_options.IsWaitGiven && IsFleetKnown() && ends(); });
-    if (WaitUntil(_options.Wait, ends) || _options.IsWaitGiven)
+    if (!WaitUntil(_options.Wait, ends) && !_options.IsWaitGiven && IsAnybodyThere())
     {
-        return;
+        WaitUntil(std::max(Seconds(), _options.Wait) + Answers, ends);
     }
-    WaitUntil(Patience(), [&] { return Underway().empty(); });
-    if (IsAnybodyThere())
-    {
-        // The busy computer of a handshake is also slow to answer.
-        const double longer = _announcements ? 3.0 * Answers : Answers;
-        WaitUntil(std::max(Seconds(), _options.Wait) + longer, ends);
-    }
-}
-
-double FleetSession::Patience() const
-{
-    return _options.Wait + (_announcements && !_options.IsWaitGiven ? Handshakes : 0.0);
-}
-
-double FleetSession::SecondsToHearEverybody() const
-{
-    return std::max(Offers::SecondsToHearEverybody(Nodes()), _announcements ? TwoAnnouncements : 0.0);
 }
 
 bool FleetSession::IsEverybodyHeard() const
 {
-    return (Seconds() >= SecondsToHearEverybody() || IsFleetKnown()) && Underway().empty();
+    return Seconds() >= Offers::SecondsToHearEverybody(Nodes()) || IsFleetKnown();
 }
 
 bool FleetSession::IsFleetKnown() const
 {
-    return !_announcements && Offers::DoAllHearTheSame(Nodes());
-}
-
-std::vector<std::string> FleetSession::Underway() const
-{
-    if (!_announcements)
-    {
-        return {};
-    }
-    const std::set<std::string> names = Doctor::NodesWithKeys(_config.Domain, _announcements->Facts());
-    const std::set<std::string> heard = Heard();
-    std::vector<std::string> underway;
-    std::set_difference(names.begin(), names.end(), heard.begin(), heard.end(), std::back_inserter(underway));
-    std::sort(underway.begin(), underway.end(), NaturalOrder());
-    return underway;
-}
-
-std::set<std::string> FleetSession::Heard() const
-{
-    const std::vector<std::string> tools = _explorer->Tools();
-    std::set<std::string> names(tools.begin(), tools.end());
-    for (const Node &node : Nodes())
-    {
-        names.insert(node.Name);
-    }
-    return names;
-}
-
-bool FleetSession::TellOfUnderway() const
-{
-    const std::vector<std::string> names = Underway();
-    if (names.empty())
-    {
-        return false;
-    }
-    Output::Talk(std::to_string(names.size()) +
-                 (names.size() == 1 ? " participant is" : " participants are") +
-                 " still being authenticated, or not let in: " + ListedNames(names) +
-                 "; ask again, or give a longer --wait");
-    return true;
+    return Offers::DoAllHearTheSame(Nodes());
 }
 
 std::string FleetSession::NoSuchNode(const std::string &pattern) const
@@ -270,23 +199,18 @@ double FleetSession::Seconds() const
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - _start).count();
 }
 
-std::unique_ptr<Doctor::NetworkTrial> FleetSession::Listen(const std::vector<int> &callIn) const
-{
-    return std::make_unique<Doctor::NetworkTrial>(Doctor::UsedBy(_config, Doctor::LookAtMachine().Interfaces),
-                                                  std::vector<Doctor::Interface>(), _config.Node, callIn,
-                                                  std::vector<int>{_config.Domain});
-}
-
-// Reports nodes with keys: such a fleet does not answer a tool without keys, but everybody can hear its
-// announcements.
+// Reports nodes with keys: they answer no tool without keys of the fleet, but everybody can hear that there
+// are some.
 void FleetSession::TellOfKeys()
 {
     try
     {
-        const std::unique_ptr<Doctor::NetworkTrial> trial = Listen({_config.Domain});
-        WaitUntil(Seconds() + TwoAnnouncements, [this] { return _wakeup.IsInterrupted(); });
-        const std::vector<Doctor::Finding> findings = Doctor::OfKeys(_config, trial->Facts(), Heard());
-        for (const Doctor::Finding &finding : findings)
+        const std::vector<Doctor::Interface> used =
+            Doctor::UsedBy(_config, Doctor::LookAtMachine().Interfaces);
+        const Doctor::NetworkTrial trial(used, {}, _config.Node, {_config.Domain}, {_config.Domain},
+                                         Doctor::OwnSealedSessions(_config));
+        WaitUntil(Seconds() + AnswersToCalls, [this] { return _wakeup.IsInterrupted(); });
+        for (const Doctor::Finding &finding : Doctor::OfKeys(_config, used, trial.Facts(), IsAnybodyThere()))
         {
             Output::Talk(SafeText(finding.Text + " (" + finding.Advice + ")"));
         }

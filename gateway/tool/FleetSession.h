@@ -10,7 +10,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -18,11 +17,6 @@
 
 #include "CommonOptions.h"
 #include "Wakeup.h"
-
-namespace Rabit::Tool::Doctor
-{
-class NetworkTrial;
-}
 
 namespace Rabit::Tool
 {
@@ -64,34 +58,23 @@ public:
     // Waits until `holds` returns true, for at most `seconds` from the start of the session.
     bool WaitUntil(
         double seconds, const std::function<bool()> &holds = [] { return false; });
-    // Waits until `holds` returns true, for Patience() at most, but not for announcements that cannot come
-    // any more (Offers::AreAllThere). Returns the last result of `holds`. `pattern`: the nodes whose
+    // Waits until `holds` returns true, for --wait at most, but not for announcements that cannot come any
+    // more (Offers::AreAllThere). Returns the last result of `holds`. `pattern`: the nodes whose
     // announcements matter.
     bool WaitForOffers(const std::string &pattern, const std::function<bool()> &holds);
-    // Waits until `isDecided` returns true, for Patience() at most, and also asks it when all nodes should
+    // Waits until `isDecided` returns true, for --wait at most, and also asks it when all nodes should
     // have been heard. Returns its last result.
     bool WaitUntilDecided(const std::function<bool()> &isDecided);
     // Waits until all nodes that are there are heard, and `isWhole` returns true; for 1.5 s at least, unless
     // IsFleetKnown. Without --wait it waits 3 s longer than usual for what is still lacking, as a node may be
-    // answering others; with keys 9 s, after up to 15 s for nodes that are being authenticated.
+    // answering others.
     void WaitForEverybody(const std::function<bool()> &isWhole);
-    // The longest time to wait for a node, in seconds from the start of the session: --wait, and without it
-    // longer than usual if this program has keys.
-    double Patience() const;
     // True if every node that is there is heard, as far as this program can know. Nodes that beat more seldom
     // than others may be missing.
     bool IsEverybodyHeard() const;
     // True if all nodes that are heard told that they hear the same nodes as this program. Then every node
-    // that any of them hears is heard here, however slow its radio is. With keys it is always false: a node
-    // that no other one has authenticated yet is found by its announcements alone, which take time.
+    // that any of them hears is heard here, however slow its radio is.
     bool IsFleetKnown() const;
-    // With keys: nodes with keys whose announcements came, and that are not heard, since they are being
-    // authenticated, or do not let this program in.
-    std::vector<std::string> Underway() const;
-    // The names of the nodes and of other tools that are heard.
-    std::set<std::string> Heard() const;
-    // Reports the names of Underway; false if there are none.
-    bool TellOfUnderway() const;
     // Says why no live node fits the pattern.
     std::string NoSuchNode(const std::string &pattern) const;
     // The first of these names that a live node or another tool has; empty: none.
@@ -114,9 +97,6 @@ public:
 
 private:
     void TellOfKeys();
-    // Listens for the announcements of participants; calls for them in those domains.
-    std::unique_ptr<Doctor::NetworkTrial> Listen(const std::vector<int> &callIn) const;
-    double SecondsToHearEverybody() const;
 
     const GatewayConfig _config;
     const CommonOptions &_options;
@@ -126,7 +106,6 @@ private:
     FleetExplorer *_explorer = nullptr;
     std::shared_ptr<Gateway::Fleet> _fleet = std::make_shared<Gateway::Fleet>();
     std::chrono::steady_clock::time_point _start = std::chrono::steady_clock::now();
-    std::unique_ptr<Doctor::NetworkTrial> _announcements;  // with keys
     std::thread _runner;
 };
 

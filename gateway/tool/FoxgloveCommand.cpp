@@ -88,7 +88,7 @@ int Run(const Options &options, Wakeup &wakeup)
         follower.FollowNew();
         follower.TellOfMissing();
         taps.Look();
-        if (!lonely && !session.IsAnybodyThere() && session.Seconds() >= session.Patience())
+        if (!lonely && !session.IsAnybodyThere() && session.Seconds() >= options.Common.Wait)
         {
             lonely = true;
             static_cast<void>(session.NobodyThere());

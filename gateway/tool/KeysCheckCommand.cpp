@@ -3,15 +3,18 @@
 #include <ctime>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 #include "Command.h"
-#include "KeysDomains.h"
-#include "KeysReport.h"
+#include "KeysConfig.h"
 #include "SafeText.h"
-#include "SealedKeys.h"
-#include "keys/FleetKeys.h"
-#include "keys/KeysCheck.h"
+#include "keys/FleetAuthority.h"
 #include "keys/KeysError.h"
+#include "keys/KeysFinding.h"
+#include "keys/MemberCheck.h"
+#include "keys/MemberFolder.h"
+#include "keys/MemberPermissions.h"
+#include "keys/NodeFolders.h"
 #include "manager/NodeSecurity.h"
 
 namespace Rabit::Tool
@@ -21,124 +24,186 @@ namespace KeysCheckParts
 namespace
 {
 
-using Options = KeysCheckOptions;
-
-// Returns the domain of the most nodes; -1 if two domains have equally many, or none has any.
-int UsualDomainOf(const Keys::FleetKeys &fleet)
+struct Options
 {
-    const std::map<int, std::size_t> domains = DomainsOf(fleet);
-    const auto most =
-        std::max_element(domains.begin(), domains.end(),
-                         [](const auto &one, const auto &other) { return one.second < other.second; });
-    const auto same = std::count_if(domains.begin(), domains.end(),
-                                    [&](const auto &one) { return one.second == most->second; });
-    return same == 1 ? most->first : -1;
+    std::string Folder = "keys";
+    std::vector<std::string> Configs;
+    int Ahead = 30;
+    bool Json = false;
+};
+
+// The report on one node.
+struct Report
+{
+    std::string Node;
+    std::string Folder;
+    std::string Until;  // a day; empty: unknown
+    std::vector<std::string> May;
+    std::vector<Keys::KeysFinding> Findings;
+};
+
+// Returns true if there is no problem.
+bool Show(const Report &report, bool json)
+{
+    const bool isGood = std::none_of(report.Findings.begin(), report.Findings.end(),
+                                     [](const Keys::KeysFinding &finding) { return finding.IsProblem; });
+    if (json)
+    {
+        Json problems = Json::array();
+        Json notes = Json::array();
+        for (const Keys::KeysFinding &finding : report.Findings)
+        {
+            (finding.IsProblem ? problems : notes).push_back(finding.Text);
+        }
+        Output::Object(Json{{"node", report.Node},
+                            {"folder", report.Folder},
+                            {"until", report.Until},
+                            {"may", report.May},
+                            {"problems", problems},
+                            {"notes", notes}});
+        return isGood;
+    }
+    Output::Line(SafeText(report.Node) + (report.Until.empty() ? "" : ": valid until " + report.Until));
+    for (const std::string &line : report.May)
+    {
+        Output::Line("  " + SafeText(line));
+    }
+    for (const Keys::KeysFinding &finding : report.Findings)
+    {
+        Output::Line((finding.IsProblem ? "  problem: " : "  note: ") + SafeText(finding.Text));
+    }
+    return isGood;
 }
 
-std::vector<Keys::KeysFinding> FindingsOf(const Keys::NodeKeys &keys, const GatewayConfig *config, int ahead)
+// Finds differences between the permissions and what the configuration needs.
+void Compare(const Keys::MemberFolder &member, const GatewayConfig &config,
+             std::vector<Keys::KeysFinding> &findings)
 {
-    std::vector<Keys::KeysFinding> findings = Keys::WhatEnds(keys, std::time(nullptr), ahead);
-    const auto tooMuch = Keys::WhatIsTooMuch(keys);
-    findings.insert(findings.end(), tooMuch.begin(), tooMuch.end());
-    if (config == nullptr)
+    const Keys::Access access = AccessOf(config);
+    for (const std::string &one : member.Lacks(access))
     {
-        return findings;
+        findings.push_back({true, "may not " + one + ", which " + config.File + " wants; renew it"});
     }
-    if (const std::string why = keys.WhyNever(config->Node, config->Transport, config->Domain); !why.empty())
+    const auto needs = Keys::PermissionsFor(access);
+    for (const auto &rule : member.Allowed().Rules())
+    {
+        const auto need = std::find_if(needs.Rules().begin(), needs.Rules().end(),
+                                       [&rule](const auto &one) { return one.Topic == rule.Topic; });
+        const bool isKnown = need != needs.Rules().end();
+        if (rule.MayWrite && !(isKnown && need->MayWrite))
+        {
+            findings.push_back(
+                {true, "may write " + rule.Topic + ", which " + config.File + " does not want; renew it"});
+        }
+        if (rule.MayRead && !(isKnown && need->MayRead))
+        {
+            findings.push_back(
+                {false, "may read " + rule.Topic + ", which " + config.File + " does not want"});
+        }
+    }
+}
+
+// `config`: that of the node; null: none was given.
+std::vector<Keys::KeysFinding> FindingsOf(const Keys::MemberFolder &member, const GatewayConfig *config,
+                                          int ahead)
+{
+    const Envelope::Certificate &certificate = member.Certificate();
+    std::vector<Keys::KeysFinding> findings = Keys::WhatEnds(certificate, std::time(nullptr), ahead);
+    const auto tooMuch = Keys::WhatIsTooMuch(certificate, member.Allowed());
+    findings.insert(findings.end(), tooMuch.begin(), tooMuch.end());
+    if (const std::string why = member.WhyNot(certificate.Name); !why.empty())
     {
         findings.push_back({true, why});
     }
-    const Keys::Access needs = AccessOf(*config);
-    for (const std::string &one : keys.Lacks(needs))
+    if (config != nullptr)
     {
-        findings.push_back({true, "may not " + one + ", which " + config->File + " wants; renew it"});
+        Compare(member, *config, findings);
     }
-    const auto isNeeded = [](const std::vector<Keys::TopicAccess> &list, const Keys::TopicAccess &one)
-    { return std::find(list.begin(), list.end(), one) != list.end(); };
-    for (const Keys::Permissions::Rule &rule : keys.Permissions().Rules)
+    if (!member.HasKey())
     {
-        for (const Keys::TopicAccess &one : rule.Publish)
-        {
-            if (rule.Allows && !isNeeded(needs.Publish, one))
-            {
-                findings.push_back({true, "may write " + one.Topic + ", which " + config->File +
-                                              " does not want; renew it"});
-            }
-        }
-        for (const Keys::TopicAccess &one : rule.Subscribe)
-        {
-            if (rule.Allows && !isNeeded(needs.Subscribe, one))
-            {
-                findings.push_back(
-                    {false, "may read " + one.Topic + " otherwise than " + config->File + " wants"});
-            }
-        }
+        findings.push_back({false, "its private key is on the node alone"});
     }
     return findings;
 }
 
-// Reports on one node's folder; returns true if it is good. Beside the authorities it may lack the private
-// key. `usual`: the domain of the other nodes; -1: none.
+// Reports on one node's folder; returns true if it is good. `fleet`: that of the authority; null: the folder
+// was named alone. Beside an authority the folder may lack the private key.
 bool Check(const std::string &folder, const std::map<std::string, GatewayConfig> &configs,
-           const Options &options, int usual = -1)
+           const Options &options, const Keys::FleetAuthority *fleet)
 {
-    KeysReport report{.Node = std::filesystem::path(folder).filename().string(),
-                      .Folder = folder,
-                      .Until = "",
-                      .May = {},
-                      .Findings = {}};
+    Report report{.Node = std::filesystem::path(folder).filename().string(),
+                  .Folder = folder,
+                  .Until = "",
+                  .May = {},
+                  .Findings = {}};
     try
     {
         const std::filesystem::path parent = std::filesystem::weakly_canonical(folder).parent_path();
-        const Keys::NodeKeys keys(folder, Keys::FleetKeys::IsFleet(parent.string())
-                                              ? Keys::PrivateKeyPlace::HereOrOnNode
-                                              : Keys::PrivateKeyPlace::Here);
-        report.Node = keys.Subject().Node;
-        report.Until = Keys::DayText(keys.ValidityOf().To);
-        report.May = Keys::WhoMayWhat(keys);
+        const bool isBesideAuthority = Keys::FleetAuthority::IsIn(parent.string());
+        const Keys::MemberFolder member(
+            folder, isBesideAuthority ? Keys::KeyPlace::HereOrOnNode : Keys::KeyPlace::Here);
+        report.Node = member.Certificate().Name;
+        report.Until = Keys::EndOf(member.Certificate());
+        report.May = Keys::WhoMayWhat(member.Allowed());
         const auto config = configs.find(report.Node);
         report.Findings =
-            FindingsOf(keys, config == configs.end() ? nullptr : &config->second, options.Ahead);
-        if (!keys.HasPrivateKey())
+            FindingsOf(member, config == configs.end() ? nullptr : &config->second, options.Ahead);
+        if (fleet != nullptr && member.Epoch() < fleet->Epoch())
         {
-            report.Findings.push_back({false, "its private key is on the node alone"});
-        }
-        if (usual >= 0 && DomainOf(keys) != usual)
-        {
-            report.Findings.push_back({false, "most nodes are in domain " + std::to_string(usual)});
+            report.Findings.push_back({true, "its bulletin is of epoch " + std::to_string(member.Epoch()) +
+                                                 ", and the fleet is in epoch " +
+                                                 std::to_string(fleet->Epoch()) +
+                                                 "; copy authority/bulletin into its folder of keys"});
         }
     }
     catch (const Keys::KeysError &error)
     {
         report.Findings.push_back({true, error.what()});
     }
-    return Print(report, options.Json);
+    return Show(report, options.Json);
+}
+
+// Reads the configurations, by their nodes. Throws ConfigError.
+std::map<std::string, GatewayConfig> ConfigsOf(const Options &options)
+{
+    std::map<std::string, GatewayConfig> configs;
+    for (const std::string &file : options.Configs)
+    {
+        GatewayConfig config = ConfigForKeys(file, "");
+        const std::string node = config.Node;
+        configs.insert_or_assign(node, std::move(config));
+    }
+    return configs;
+}
+
+// Names the nodes of these that have no folder in that of the fleet. Returns true if there are none.
+bool AllHaveKeys(const std::map<std::string, GatewayConfig> &configs, const Keys::FleetAuthority &fleet)
+{
+    bool all = true;
+    for (const auto &[node, config] : configs)
+    {
+        if (!std::filesystem::exists(fleet.FolderOf(node)))
+        {
+            Output::Talk(node + " has no keys; `rabit keys add " + node + " --config " + config.File + "`");
+            all = false;
+        }
+    }
+    return all;
 }
 
 int Run(const Options &options)
 {
-    if (SealedKeys::AreIn(options.Folder))
-    {
-        return SealedKeys::Check(options);
-    }
-    if (Keys::FleetKeys::IsFleet(options.Folder) ||
-        std::filesystem::exists(Keys::NodeFiles(options.Folder).Certificate))
-    {
-        Output::Talk("the keys in " + options.Folder +
-                     " are of the former format, which will be removed; `rabit keys init --sealed` makes a "
-                     "fleet of the new one");
-    }
+    Keys::CheckFormat(options.Folder);
     const std::map<std::string, GatewayConfig> configs = ConfigsOf(options);
-    if (!Keys::FleetKeys::IsFleet(options.Folder))
+    if (!Keys::FleetAuthority::IsIn(options.Folder))
     {
-        return Check(options.Folder, configs, options) ? Good : ProblemFound;
+        return Check(options.Folder, configs, options, nullptr) ? Good : ProblemFound;
     }
-    const Keys::FleetKeys fleet(options.Folder);
-    const int usual = UsualDomainOf(fleet);
+    const Keys::FleetAuthority fleet(options.Folder);
     bool isGood = true;
     for (const std::string &node : fleet.Nodes())
     {
-        isGood = Check(fleet.FolderOf(node), configs, options, usual) && isGood;
+        isGood = Check(fleet.FolderOf(node), configs, options, &fleet) && isGood;
     }
     for (const std::string &node : options.Json ? std::vector<std::string>() : fleet.Revoked())
     {
@@ -147,7 +212,7 @@ int Run(const Options &options)
             Output::Line(SafeText(node) + ": revoked");
         }
     }
-    return AllHaveKeys(configs, options.Folder) && isGood ? Good : ProblemFound;
+    return AllHaveKeys(configs, fleet) && isGood ? Good : ProblemFound;
 }
 
 }  // namespace

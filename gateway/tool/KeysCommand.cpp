@@ -1,24 +1,19 @@
 // rabit keys: makes the keys, certificates and permissions of a fleet.
-#include <rabit/transport/TransportFactory.h>
-
-#include <algorithm>
+#include <cstddef>
 #include <ctime>
-#include <map>
 #include <memory>
 #include <optional>
 
 #include "Command.h"
-#include "KeysDomains.h"
-#include "KeysOptions.h"
+#include "KeysConfig.h"
 #include "SafeText.h"
-#include "SealedKeys.h"
-#include "keys/FleetKeys.h"
+#include "keys/FleetAuthority.h"
 #include "keys/KeyFiles.h"
-#include "keys/KeysCheck.h"
-#include "keys/KeysError.h"
+#include "keys/MemberCheck.h"
+#include "keys/MemberFolder.h"
+#include "keys/MemberPermissions.h"
+#include "keys/MemberRequest.h"
 #include "keys/Passphrase.h"
-#include "keys/SigningRequest.h"
-#include "keys/SubjectName.h"
 #include "manager/NodeSecurity.h"
 
 namespace Rabit::Tool
@@ -28,79 +23,77 @@ namespace KeysParts
 namespace
 {
 
-using Options = KeysOptions;
-
-Keys::FleetKeys FleetOf(const Options &options)
+// Of all commands but `check`.
+struct Options
 {
-    return Keys::FleetKeys(options.Folder, Keys::PassphraseFrom(options.PassphraseFile));
+    std::string Folder = "keys";
+    std::string Node;
+    std::vector<std::string> Nodes;
+    std::string Config;
+    std::vector<std::string> Requests;
+    std::string PassphraseFile;
+    int Days = 365;
+    bool ForTool = false;
+    bool RevokeOld = false;
+    bool AsksForPassphrase = false;
+    bool Json = false;
+};
+
+Keys::FleetAuthority FleetOf(const Options &options)
+{
+    return Keys::FleetAuthority(options.Folder, Keys::PassphraseFrom(options.PassphraseFile));
 }
 
-Keys::FleetKeys::Period PeriodOf(const Options &options)
+Keys::FleetAuthority::Period PeriodOf(const Options &options)
 {
-    return {std::time(nullptr), options.Days};
+    return {.Now = std::time(nullptr), .Days = options.Days};
 }
 
-Keys::FleetKeys::Request RequestFrom(const GatewayConfig &config)
-{
-    return {
-        .Node = config.Node, .SmallGuid = Keys::WantsSmallGuid(config.Transport), .Access = AccessOf(config)};
-}
-
-Keys::FleetKeys::Request RequestOf(const Options &options, const Keys::FleetKeys &fleet,
-                                   const std::string &node)
+Keys::FleetAuthority::Request RequestOf(const Options &options, const std::string &node)
 {
     GatewayConfig config;
-    if (!options.Config.empty())
-    {
-        config = ConfigForKeys(options.Config, node);
-    }
-    else
+    if (options.Config.empty())
     {
         config.Node = node;
         config.Tool.emplace();
-        const std::map<int, std::size_t> domains = DomainsOf(fleet);
-        if (options.Domain < 0 && domains.size() != 1)
-        {
-            throw Keys::KeysError(std::string(domains.empty()
-                                                  ? "no node of the fleet has keys yet"
-                                                  : "the nodes of the fleet are in several domains") +
-                                  "; give the tool's with --domain");
-        }
-        config.Domain = options.Domain < 0 ? domains.begin()->first : options.Domain;
     }
-    if (options.Domain >= 0)
+    else
     {
-        config.Domain = options.Domain;
+        config = ConfigForKeys(options.Config, node);
     }
-    if (!options.Transport.empty())
-    {
-        config.Transport = options.Transport;
-    }
-    ValidateTransportName(config, AvailableTransports(), KnownTransports());
-    return RequestFrom(config);
+    return {.Node = config.Node,
+            .Role = config.Tool ? Envelope::CertificateRole::Tool : Envelope::CertificateRole::Node,
+            .Allowed = Keys::PermissionsFor(AccessOf(config))};
 }
 
-Keys::SigningRequest SigningRequestIn(const std::string &file)
+Keys::MemberRequest MemberRequestIn(const std::string &file)
 {
-    return Keys::ReadSigningRequest(Keys::ReadFile(file), file);
+    return Keys::ReadMemberRequest(Keys::ReadFile(file), file);
+}
+
+// Tells how the newest bulletin reaches the fleet.
+void TellBulletin(const Keys::FleetAuthority &fleet, const std::string &folder)
+{
+    Output::Talk("the fleet is in epoch " + std::to_string(fleet.Epoch()) + " now: copy " + folder +
+                 "/authority/bulletin into the folder of keys of any one node, and start that node anew; it "
+                 "passes the bulletin on to the others in flight");
 }
 
 // Prints the new keys and their permissions. `signing`: the request of the node, if it made one; `revoked`:
 // how many older certificates were revoked, if that was asked for.
-void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::string &node,
-              const Keys::SigningRequest *signing = nullptr,
-              std::optional<std::size_t> revoked = std::nullopt)
+void ShowMade(const Options &options, const Keys::FleetAuthority &fleet, const std::string &node,
+              const Keys::MemberRequest *signing = nullptr, std::optional<std::size_t> revoked = std::nullopt)
 {
     const std::string folder = fleet.FolderOf(node);
-    const Keys::NodeKeys keys(folder, Keys::PrivateKeyPlace::HereOrOnNode);
-    const std::string until = Keys::DayText(keys.ValidityOf().To);
-    const std::vector<std::string> may = Keys::WhoMayWhat(keys);
+    const Keys::MemberFolder member(folder, Keys::KeyPlace::HereOrOnNode);
+    const std::string until = Keys::EndOf(member.Certificate());
+    const std::vector<std::string> may = Keys::WhoMayWhat(member.Allowed());
     if (options.Json)
     {
         Json object{{"node", node}, {"folder", folder}, {"until", until}, {"may", may}};
         if (signing != nullptr)
         {
-            object["key"] = Keys::FingerprintOf(*signing->PublicKey);
+            object["key"] = signing->Keys.Fingerprint();
         }
         if (revoked)
         {
@@ -117,7 +110,7 @@ void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::s
         }
         if (signing != nullptr)
         {
-            Output::Line("  key " + Keys::FingerprintOf(*signing->PublicKey));
+            Output::Line("  key " + signing->Keys.Fingerprint());
         }
     }
     if (signing != nullptr)
@@ -125,45 +118,33 @@ void ShowMade(const Options &options, const Keys::FleetKeys &fleet, const std::s
         Output::Talk("the author of the request is now " + node +
                      ": compare the key with the one that `rabit keys request` printed there");
     }
-    Output::Talk((keys.HasPrivateKey()
-                      ? "copy the folder to " + node + " by a way that nobody else can read, and "
-                      : "copy the files in the folder into the folder on " + node +
-                            " that has its private key (they are not secret), and ") +
-                 (options.ForTool ? "look at the fleet in domain " + std::to_string(DomainOf(keys)) +
-                                        " with `rabit nodes --keys <the folder there>`"
-                                  : "write `security: {keys: <the folder there>}` into its configuration"));
+    const bool isTool = member.Certificate().Role == Envelope::CertificateRole::Tool;
+    Output::Talk((member.HasKey() ? "copy the folder to " + node + " by a way that nobody else can read, and "
+                                  : "copy the files in the folder into the folder on " + node +
+                                        " that has its private key (they are not secret), and ") +
+                 (isTool ? "look at the fleet with `rabit nodes --domain N --keys <the folder there>`"
+                         : "write `security: {keys: <the folder there>}` into its configuration"));
     if (revoked)
     {
-        Output::Talk(std::to_string(*revoked) +
-                     (*revoked == 1 ? " older certificate of " + node + " is revoked"
-                                    : " older certificates of " + node + " are revoked") +
-                     ": copy revoked.pem to all nodes, and start them again");
+        Output::Talk(std::to_string(*revoked) + (*revoked == 1
+                                                     ? " older certificate of " + node + " is revoked"
+                                                     : " older certificates of " + node + " are revoked"));
+        TellBulletin(fleet, options.Folder);
     }
 }
 
 int Init(const Options &options)
 {
-    if (options.Sealed)
-    {
-        return SealedKeys::Init(options);
-    }
     std::optional<Keys::Secret> passphrase = Keys::GivenPassphrase(options.PassphraseFile);
     if (!passphrase && options.AsksForPassphrase)
     {
         passphrase =
-            Keys::TypedPassphrase("New passphrase of the authorities in " + options.Folder + ": ", true);
+            Keys::TypedPassphrase("New passphrase of the authority in " + options.Folder + ": ", true);
     }
-    Keys::FleetKeys::Init(options.Folder, options.FleetName, PeriodOf(options),
-                          passphrase ? passphrase->Text() : std::string_view());
-    const Keys::FleetKeys fleet(options.Folder);
-    const std::string until = Keys::DayText(fleet.EndsAt());
-    Output::ObjectOrLine(options.Json,
-                         Json{{"folder", options.Folder},
-                              {"fleet", fleet.Fleet()},
-                              {"until", until},
-                              {"encrypted", passphrase.has_value()}},
-                         options.Folder + ": fleet `" + fleet.Fleet() + "`, valid until " + until +
-                             (passphrase ? ", private keys of the authorities encrypted" : ""));
+    Keys::FleetAuthority::Init(options.Folder, passphrase ? passphrase->Text() : std::string_view());
+    Output::ObjectOrLine(
+        options.Json, Json{{"folder", options.Folder}, {"encrypted", passphrase.has_value()}},
+        options.Folder + ": a new fleet" + (passphrase ? ", private key of the authority encrypted" : ""));
     Output::Talk("keep " + options.Folder +
                  "/authority where no node and no network reaches it: who has it can make keys for anybody");
     return Good;
@@ -171,23 +152,15 @@ int Init(const Options &options)
 
 int Add(const Options &options)
 {
-    if (SealedKeys::AreIn(options.Folder))
-    {
-        return SealedKeys::Add(options);
-    }
-    const Keys::FleetKeys fleet = FleetOf(options);
-    fleet.Add(RequestOf(options, fleet, options.Node), PeriodOf(options));
+    const Keys::FleetAuthority fleet = FleetOf(options);
+    fleet.Add(RequestOf(options, options.Node), PeriodOf(options));
     ShowMade(options, fleet, options.Node);
     return Good;
 }
 
 int Request(const Options &options)
 {
-    if (options.Sealed || SealedKeys::AreIn(options.Folder))
-    {
-        return SealedKeys::Request(options);
-    }
-    const Keys::RequestedKeys made = Keys::RequestKeys(options.Folder, options.Node);
+    const Keys::RequestedMember made = Keys::RequestMember(options.Folder, options.Node);
     Output::ObjectOrLine(options.Json,
                          Json{{"node", options.Node},
                               {"folder", options.Folder},
@@ -203,52 +176,47 @@ int Request(const Options &options)
 
 int Sign(const Options &options)
 {
-    if (SealedKeys::AreIn(options.Folder))
-    {
-        return SealedKeys::Sign(options);
-    }
-    // All are read before the first is signed.
-    std::vector<Keys::SigningRequest> requests;
+    // All are read and checked before the first is signed.
+    std::vector<Keys::MemberRequest> requests;
     for (const std::string &file : options.Requests)
     {
-        requests.push_back(SigningRequestIn(file));
+        requests.push_back(MemberRequestIn(file));
     }
-    const Keys::FleetKeys fleet = FleetOf(options);
-    for (const Keys::SigningRequest &signing : requests)
+    const Keys::FleetAuthority fleet = FleetOf(options);
+    std::vector<Keys::FleetAuthority::Request> asked;
+    for (const Keys::MemberRequest &signing : requests)
     {
-        fleet.Add(RequestOf(options, fleet, signing.Node), PeriodOf(options), &signing);
-        ShowMade(options, fleet, signing.Node, &signing);
+        asked.push_back(RequestOf(options, signing.Node));
+    }
+    fleet.CheckAdd(requests);
+    for (std::size_t i = 0; i < requests.size(); ++i)
+    {
+        fleet.Add(asked[i], PeriodOf(options), &requests[i]);
+        ShowMade(options, fleet, requests[i].Node, &requests[i]);
     }
     return Good;
 }
 
 int Renew(const Options &options)
 {
-    if (SealedKeys::AreIn(options.Folder))
-    {
-        return SealedKeys::Renew(options);
-    }
-    std::optional<Keys::SigningRequest> signing;
+    std::optional<Keys::MemberRequest> signing;
     if (!options.Requests.empty())
     {
-        signing = SigningRequestIn(options.Requests.front());
+        signing = MemberRequestIn(options.Requests.front());
     }
-    const Keys::SigningRequest *request = signing ? &*signing : nullptr;
-    const Keys::FleetKeys fleet = FleetOf(options);
+    const Keys::MemberRequest *request = signing ? &*signing : nullptr;
+    const Keys::FleetAuthority fleet = FleetOf(options);
     if (options.RevokeOld)
     {
-        std::for_each(options.Nodes.begin(), options.Nodes.end(),
-                      [&](const std::string &node) { fleet.CheckNewKey(node, request); });
+        for (const std::string &node : options.Nodes)
+        {
+            fleet.CheckNewKey(node, request);
+        }
     }
     for (const std::string &node : options.Nodes)
     {
-        Keys::FleetKeys::Request access =
-            options.Config.empty() ? fleet.RequestOf(node) : RequestOf(options, fleet, node);
-        if (!options.Transport.empty())
-        {
-            access.SmallGuid = Keys::WantsSmallGuid(options.Transport);
-        }
-        fleet.Renew(access, PeriodOf(options), request);
+        fleet.Renew(options.Config.empty() ? fleet.RequestOf(node) : RequestOf(options, node),
+                    PeriodOf(options), request);
         std::optional<std::size_t> revoked;
         if (options.RevokeOld)
         {
@@ -261,51 +229,34 @@ int Renew(const Options &options)
 
 int Revoke(const Options &options)
 {
-    if (SealedKeys::AreIn(options.Folder))
-    {
-        return SealedKeys::Revoke(options);
-    }
-    const Keys::FleetKeys fleet = FleetOf(options);
+    const Keys::FleetAuthority fleet = FleetOf(options);
     const std::size_t count = fleet.Revoke(options.Node, std::time(nullptr));
     Output::ObjectOrLine(options.Json, Json{{"node", options.Node}, {"revoked", count}},
                          options.Node + ": " + std::to_string(count) +
                              (count == 1 ? " certificate is revoked" : " certificates are revoked"));
     Output::Talk("the folder " + fleet.FolderOf(options.Node) + " is removed");
-    Output::Talk("each node believes " + options.Node +
-                 " until it has its new revoked.pem and is started again; copy to each node:");
-    for (const std::string &node : fleet.Nodes())
-    {
-        Output::Talk("    " + fleet.FolderOf(node) + "/revoked.pem");
-    }
+    TellBulletin(fleet, options.Folder);
     return Good;
 }
 
-CLI::Option *AddFolder(CLI::App &command, Options &options)
+void AddFolder(CLI::App &command, Options &options)
 {
-    return command.add_option("--keys", options.Folder, "The fleet's folder")->capture_default_str();
+    command.add_option("--keys", options.Folder, "The fleet's folder")->capture_default_str();
 }
 
-CLI::Option *AddDays(CLI::App &command, Options &options, int days)
+void AddDays(CLI::App &command, Options &options)
 {
     constexpr int longest = 36500;
-    options.Days = days;
-    return command.add_option("--days", options.Days, "How long they are valid")
+    command.add_option("--days", options.Days, "How long the certificate is valid")
         ->check(CLI::Range(1, longest))
         ->capture_default_str();
 }
 
-CLI::Option *AddSealed(CLI::App &command, Options &options)
-{
-    return command.add_flag("--sealed", options.Sealed,
-                            "Keys of the new format, with which each datagram is sealed");
-}
-
 void AddPassphrase(CLI::App &command, Options &options)
 {
-    command.add_option(
-        "--passphrase-file", options.PassphraseFile,
-        "Its first line opens the authorities' private keys, or /dev/fd/3 for a pipe; default: "
-        "RABIT_KEYS_PASSPHRASE of the environment, or the terminal");
+    command.add_option("--passphrase-file", options.PassphraseFile,
+                       "Its first line opens the authority's private key, or /dev/fd/3 for a pipe; default: "
+                       "RABIT_KEYS_PASSPHRASE of the environment, or the terminal");
 }
 
 // The options that say what a node may do.
@@ -317,12 +268,7 @@ void AddAccess(CLI::App &command, Options &options)
     CLI::Option *tool = command.add_flag("--tool", options.ForTool,
                                          "For this program: it may read everything, and publishes nothing");
     config->excludes(tool);
-    command
-        .add_option("--domain", options.Domain,
-                    "DDS domain, in place of the file's; of a tool: that of the fleet")
-        ->check(CLI::Range(0, Keys::LargestDomain));
-    command.add_option("--transport", options.Transport, "DDS implementation, in place of the file's");
-    AddDays(command, options, 365);
+    AddDays(command, options);
 }
 
 std::shared_ptr<Options> AddCommand(CLI::App &keys, const char *name, const char *help,
@@ -362,34 +308,27 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     keys->require_subcommand(1);
     CLI::App *command = nullptr;
 
-    auto init = AddCommand(*keys, "init", "Makes the two authorities of a new fleet", &Init, chosen, command);
-    AddExamples(*command, {"rabit keys init", "rabit keys init --sealed --passphrase",
-                           "rabit keys init fleet_keys --name survey --days 365"});
+    auto init = AddCommand(*keys, "init", "Makes the authority of a new fleet", &Init, chosen, command);
+    AddExamples(*command, {"rabit keys init", "rabit keys init --passphrase",
+                           "rabit keys init fleet_keys --passphrase-file /media/stick/passphrase"});
     command->add_option("FOLDER", init->Folder, "Where to")->capture_default_str();
-    CLI::Option *name =
-        command->add_option("--name", init->FleetName, "Name of the fleet")->capture_default_str();
-    CLI::Option *days = AddDays(*command, *init, 3650);
-    // An authority of the new format has neither.
-    AddSealed(*command, *init)->excludes(name)->excludes(days);
     command->add_flag("--passphrase", init->AsksForPassphrase,
-                      "Asks at the terminal for a passphrase, and encrypts the authorities' private keys");
-    command->add_option(
-        "--passphrase-file", init->PassphraseFile,
-        "Encrypts them with the first line of this file, or of /dev/fd/3 for a pipe; default: "
-        "RABIT_KEYS_PASSPHRASE of the environment, if it is set");
+                      "Asks at the terminal for a passphrase, and encrypts the authority's private key");
+    command->add_option("--passphrase-file", init->PassphraseFile,
+                        "Encrypts it with the first line of this file, or of /dev/fd/3 for a pipe; default: "
+                        "RABIT_KEYS_PASSPHRASE of the environment, if it is set");
 
-    auto add = AddCommand(*keys, "add", "Makes a node's key, certificate and permissions", &Add, chosen,
+    auto add = AddCommand(*keys, "add", "Makes a node's keys, certificate and permissions", &Add, chosen,
                           command, &CheckAccess);
-    AddExamples(*command,
-                {"rabit keys add uav1 --config uav1.yaml", "rabit keys add laptop --tool --domain 7",
-                 "rabit keys add uav1 --config uav1.yaml --days 30"});
+    AddExamples(*command, {"rabit keys add uav1 --config uav1.yaml", "rabit keys add laptop --tool",
+                           "rabit keys add uav1 --config uav1.yaml --days 30"});
     command->add_option("NODE", add->Node, "Name of the node")->required();
     AddFolder(*command, *add);
     AddAccess(*command, *add);
     AddPassphrase(*command, *add);
 
     auto request = AddCommand(*keys, "request",
-                              "On a node: makes its private key, which stays there, and a request for a "
+                              "On a node: makes its private keys, which stay there, and a request for a "
                               "certificate",
                               &Request, chosen, command);
     AddExamples(*command, {"rabit keys request uav1", "rabit keys request uav1 --to /etc/rabit/keys",
@@ -397,14 +336,13 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     command->add_option("NODE", request->Node, "Name of the node")->required();
     command->add_option("--to", request->Folder, "The node's folder of keys, made if it is not there")
         ->capture_default_str();
-    AddSealed(*command, *request);
 
     auto sign = AddCommand(*keys, "sign",
                            "Makes certificates and permissions for nodes that made requests: no secret files",
                            &Sign, chosen, command, &CheckAccess);
     AddExamples(*command, {"rabit keys sign uav1.request.pem --config uav1.yaml",
                            "rabit keys sign uav1.request.pem uav2.request.pem --config uav.yaml",
-                           "rabit keys sign laptop.request.pem --tool --domain 7"});
+                           "rabit keys sign laptop.request.pem --tool"});
     command->add_option("REQUEST", sign->Requests, "Files that `rabit keys request` made")->required();
     AddFolder(*command, *sign);
     AddAccess(*command, *sign);
@@ -421,7 +359,6 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
     AddFolder(*command, *renew);
     command->add_option("--config", renew->Config, "The node's configuration, if it has changed")
         ->check(CLI::ExistingFile);
-    command->add_option("--transport", renew->Transport, "DDS implementation, if it has changed");
     command->add_flag("--revoke-old", renew->RevokeOld,
                       "Revokes the older ones; refused for a node that would keep its key");
     command
@@ -429,7 +366,7 @@ void AddKeysCommand(CLI::App &app, Chosen &chosen)
             "--request", renew->Requests,
             "A request of the node for another key; without it, a node that made a request keeps its key")
         ->expected(1);
-    AddDays(*command, *renew, 365);
+    AddDays(*command, *renew);
     AddPassphrase(*command, *renew);
 
     auto revoke =

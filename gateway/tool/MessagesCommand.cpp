@@ -159,8 +159,7 @@ int Run(const Options &all, Wakeup &wakeup)
     {
         Output::Talk("not all nodes have announced themselves yet; ask again in 2 s");
     }
-    const bool isWhole = !session.TellOfUnderway() && Offers::AreComplete(nodes);
-    return differences.empty() && isWhole ? Good : ProblemFound;
+    return differences.empty() && Offers::AreComplete(nodes) ? Good : ProblemFound;
 }
 
 }  // namespace

@@ -35,8 +35,7 @@ std::string Names(const Items &items, NameOf nameOf)
 
 // Returns all problems, in lines.
 std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
-                                         const std::vector<FleetSession::Node> &nodes,
-                                         const std::vector<std::string> &underway)
+                                         const std::vector<FleetSession::Node> &nodes)
 {
     std::vector<Gateway::Problem> problems(fleet.problems.begin(), fleet.problems.end());
     for (const Gateway::NodeStatus &node : fleet.nodes)
@@ -65,12 +64,6 @@ std::vector<Gateway::Problem> ProblemsOf(const Gateway::Fleet &fleet,
         {
             add(node.Name, "its own problems are not known yet; ask again in 2 s");
         }
-    }
-    for (const std::string &name : underway)
-    {
-        add(name,
-            "it is still being authenticated, or does not let this program in; ask again, or give a "
-            "longer --wait");
     }
     for (const std::string &line : Offers::Differences(nodes))
     {
@@ -204,7 +197,7 @@ int Show(FleetSession &session, const Options &options, bool &stillRead)
 {
     const Gateway::Fleet fleet = session.Fleet();
     const std::vector<FleetSession::Node> nodes = session.Nodes();
-    const std::vector<Gateway::Problem> problems = ProblemsOf(fleet, nodes, session.Underway());
+    const std::vector<Gateway::Problem> problems = ProblemsOf(fleet, nodes);
     stillRead = options.Common.Json ? ShowJson(fleet, nodes, problems) : ShowTable(fleet, nodes, problems);
     return problems.empty() ? Good : ProblemFound;
 }

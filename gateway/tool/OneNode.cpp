@@ -59,7 +59,6 @@ int WaitForNode(FleetSession &session, const CommonOptions &options, const std::
         return session.NobodyThere();
     }
     Output::Talk(session.NoSuchNode(node));
-    session.TellOfUnderway();
     return ProblemFound;
 }
 

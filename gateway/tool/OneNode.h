@@ -15,7 +15,7 @@ namespace Rabit::Tool
 // The configuration of a tool that requests no announcements.
 GatewayConfig ConfigWithoutOffers(const CommonOptions &options);
 
-// Waits until the node is heard, for FleetSession::Patience() at most, and without --wait only until all
+// Waits until the node is heard, for --wait at most, and without --wait only until all
 // nodes are heard. Returns Good, or reports that it is not there and returns the exit code.
 int WaitForNode(FleetSession &session, const CommonOptions &options, const std::string &node);
 

@@ -199,7 +199,7 @@ int Run(const Options &options, Wakeup &wakeup)
         FleetFollower follower(session, options.What, config, config.Record->Except);
         MessageTaps taps(config, session.Workspace(), target);
         const auto end = [&]
-        { return begin ? *begin + options.For : std::max(options.For, session.Patience()); };
+        { return begin ? *begin + options.For : std::max(options.For, options.Common.Wait); };
         while (!wakeup.IsInterrupted() && session.Seconds() < end())
         {
             TellOfNew(follower.FollowNew());
@@ -210,7 +210,7 @@ int Run(const Options &options, Wakeup &wakeup)
             {
                 begin = session.Seconds();
             }
-            if (!anybody && session.Seconds() >= session.Patience())
+            if (!anybody && session.Seconds() >= options.Common.Wait)
             {
                 target->End();
                 RemoveFile(options, target->Status());

@@ -87,7 +87,6 @@ void TellNobodyPublishes(const FleetSession &session, const std::string &pattern
         Output::Talk(ListedNames(matching) + (matching.size() == 1 ? " does" : " do") + " not publish `" +
                      message + "`" + NearestWordHint(message, messages));
     }
-    session.TellOfUnderway();
 }
 
 int Samples::Open(double until)

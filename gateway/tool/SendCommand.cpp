@@ -248,7 +248,6 @@ int Run(const Options &options, Wakeup &wakeup)
     if (found.empty())
     {
         Output::Talk(WhyNobody(*to, options.Type, session));
-        session.TellOfUnderway();
         return ProblemFound;
     }
     std::vector<std::string> holders;
@@ -273,7 +272,7 @@ int Run(const Options &options, Wakeup &wakeup)
         return ProblemFound;
     }
     Sender sender(options, session, wakeup, type.Type);
-    bool good = holders.size() == found.size() && !(to->Node == "*" && session.TellOfUnderway());
+    bool good = holders.size() == found.size();
     if (options.Value != "-")
     {
         return sender.Send(options.Value) && good ? Good : ProblemFound;

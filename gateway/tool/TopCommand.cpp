@@ -167,7 +167,6 @@ int Run(const Options &options, Wakeup &wakeup)
         if (!Show(rows, options.Common.Json) || options.Once)
         {
             const bool isWhole =
-                !session.TellOfUnderway() &&
                 std::all_of(rows.begin(), rows.end(), [](const Row &row) { return row.second.has_value(); });
             return isWhole || !options.Once ? Good : ProblemFound;
         }

@@ -78,7 +78,6 @@ int Run(const Options &options, Wakeup &wakeup)
     {
         Output::Talk("nobody announces a type or message `" + options.Name + "`" +
                      HintFor(options.Name, NamesIn(nodes)));
-        session.TellOfUnderway();
         return ProblemFound;
     }
     const std::string name = TypeNamed(options.Name, nodes);

@@ -28,8 +28,8 @@ TopicQos LinkTopicQos()
 std::size_t LargestLinkFrame(std::size_t maxDatagram, bool secured)
 {
     constexpr std::size_t vendors = 176;
-    constexpr std::size_t signatures = 256;
-    return std::max(maxDatagram, TransportSettings::SmallestDatagram) - vendors - (secured ? signatures : 0) -
+    constexpr std::size_t seal = 99;  // by which backends make their datagrams smaller (envelope/Sealer.h)
+    return std::max(maxDatagram, TransportSettings::SmallestDatagram) - vendors - (secured ? seal : 0) -
            LinkSampleOverhead;
 }
 

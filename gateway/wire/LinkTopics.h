@@ -17,8 +17,7 @@ inline constexpr std::size_t LinkSampleOverhead = 8;
 // Bytes of a frame that goes in one datagram of so many bytes over every backend. Less than the headers leave
 // room for: the vendors cut a sample in two sooner, Fast DDS one that is less than 176 bytes smaller than the
 // largest datagram, Cyclone DDS 100.
-// With security, signatures take some of it: one of a message, one of the frame, and one for each of a few
-// nodes. In a larger fleet such a datagram is larger.
+// With keys, the seal takes some of it (transport/envelope/README.md).
 std::size_t LargestLinkFrame(std::size_t maxDatagram, bool secured = false);
 // The same over all paths of a gateway, each with or without keys: one frame may go by any of them.
 std::size_t LargestLinkFrameOf(const GatewayConfig &config);

@@ -35,7 +35,8 @@ class Flight:
         self.strangers = list(strangers)
         self.nodes = [node for node in transports if node not in self.strangers]
         self._deadline = options.deadline
-        arguments = {node: [*ORDERED, *self._destinations(node), *self._keys(node, keys)] for node in transports}
+        arguments = {node: [*ORDERED, *self._destinations(node), *fleet_keys.arguments(keys or {}, node)]
+                     for node in transports}
         self.fleet = run_scenario.Fleet(ground, options.ledger_node, None,
                                         {"nodes": arguments, "transports": transports})
         self.sights = self.fleet.sights
@@ -47,10 +48,6 @@ class Flight:
 
     def _destinations(self, node):
         return [word for other in self._group(node) if other != node for word in ("--to", other)]
-
-    @staticmethod
-    def _keys(node, keys):
-        return ["--keys", str(keys[node])] if keys and node in keys else []
 
     def start(self, node):
         self.ordered[node], self.states[node] = 0, 1
@@ -204,7 +201,7 @@ def fly(name, pair, options):
     transports = dict(zip(hosts, pair * 2))
     strangers = STRANGERS if keyed_flight else ()
     with field.Field(hosts) as ground:
-        keys = fleet_keys.make(options.rabit, ground.folder, dict(zip(NODES, pair))) if keyed_flight else None
+        keys = fleet_keys.make(options.rabit, ground.folder, NODES) if keyed_flight else None
         flight = Flight(options, ground, transports, strangers, keys)
         try:
             ALL[name](flight)

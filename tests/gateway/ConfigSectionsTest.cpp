@@ -31,7 +31,7 @@ const std::map<std::string, std::vector<std::string>> Frames = {
      {"node: a\naccept:\n  - {queue: Q, types: [T], @}\n", "node: a\naccept:\n  - {types: [T], @}\n",
       "node: a\naccept:\n  - {queue: Q, @}\n"}},
     {"send", {"node: a\nsend:\n  - {@}\n"}},
-    {"security", {"node: a\nsecurity: {keys: k, @}\n", "node: a\nsecurity: {@}\n"}},
+    {"security", {"node: a\nsecurity: {@}\n"}},
     {"radio", {"node: a\nradio: {@}\n"}},
     {"record",
      {"node: a\nsubscribe:\n  - {message: Pose, type: T}\nrecord: {folder: f, @}\n",

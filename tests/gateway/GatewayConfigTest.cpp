@@ -292,6 +292,8 @@ paths:
     EXPECT_FALSE(paths[1].Multicast);
     EXPECT_EQ(paths[1].Radio.Budget, 1500.0);
     EXPECT_EQ(paths[1].Security->Keys, "other/uav1");
+    EXPECT_EQ(paths[0].Lines.at("security"), config.Lines.at("security"));
+    EXPECT_EQ(paths[1].Lines.at("security"), config.Lines.at("paths.modem.security"));
 }
 
 TEST_F(GatewayConfigTest, WithoutPathsThereIsOneWithTheSettingsOfTheGateway)

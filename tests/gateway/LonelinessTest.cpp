@@ -77,12 +77,12 @@ TEST_F(LonelinessTest, NamesWhatSharedMemoryNeeds)
                                           "only if both have the same user and the same /dev/shm (docs"));
 }
 
-TEST_F(LonelinessTest, SaysThatKeysAreExchangedFirst)
+TEST_F(LonelinessTest, SaysWhomANodeWithKeysHears)
 {
     EXPECT_THAT(ReasonAt(110s), Not(HasSubstr("keys")));
     config.Security.emplace();
-    EXPECT_THAT(ReasonAt(110s), HasSubstr("peers: none; with keys, a node is heard once both have exchanged "
-                                          "theirs, which takes longer on a slow channel (docs"));
+    EXPECT_THAT(ReasonAt(110s),
+                HasSubstr("peers: none; with keys, only nodes of the same fleet are heard (docs"));
 }
 
 TEST_F(LonelinessTest, SaysWhenNothingGoesOut)

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "keys/FleetAuthority.h"
-#include "keys/FleetKeys.h"
 #include "keys/MemberPermissions.h"
 
 namespace Rabit
@@ -23,23 +22,20 @@ namespace Rabit
 namespace
 {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 constexpr std::time_t Day = 24 * 60 * 60;
 
 // A backend that the tests never ask to open a session.
-class NamedTransport : public Transport
+class UnusedTransport : public Transport
 {
 public:
-    explicit NamedTransport(std::string name) : _name(std::move(name)) {}
-    std::string Name() const override { return _name; }
+    std::string Name() const override { return "unused"; }
     std::unique_ptr<TransportSession> Open(const TransportSettings &, PeerHandler) override
     {
         return nullptr;
     }
-
-private:
-    const std::string _name;
 };
 
 class NodeSecurity : public testing::Test
@@ -53,23 +49,24 @@ protected:
         Config.Node = "uav1";
         Config.Domain = 7;
         Config.Publish.push_back({.Message = "Pose", .Type = "Uav::Pose"});
-        Config.Security = {.Keys = Root + "/keys/uav1", .Level = SecurityLevel::Encrypt};
+        Config.Security = {.Keys = Root + "/keys/uav1"};
         Config.File = "uav1.yaml";
         Config.Lines = {{"security", 5}};
     }
     ~NodeSecurity() override { std::filesystem::remove_all(Root); }
 
-    void Make(std::time_t now = std::time(nullptr)) const
+    void Make(int days = 365, std::time_t now = std::time(nullptr)) const
     {
-        Keys::FleetKeys::Init(Root + "/keys", "blue", {now - 1000 * Day, 5000});
-        Keys::FleetKeys(Root + "/keys")
-            .Add({.Node = "uav1", .SmallGuid = false, .Access = AccessOf(Config)}, {now, 100});
+        Keys::FleetAuthority::Init(Root + "/keys");
+        Keys::FleetAuthority(Root + "/keys")
+            .Add({.Node = "uav1", .Allowed = Keys::PermissionsFor(AccessOf(Config))},
+                 {.Now = now, .Days = days});
     }
-    std::string WhyNot(const std::string &transport = "fastdds") const
+    std::string WhyNot() const
     {
         try
         {
-            CheckTransportSettings(Config, NamedTransport(transport));
+            CheckTransportSettings(Config, UnusedTransport());
             return "";
         }
         catch (const ConfigError &error)
@@ -87,28 +84,28 @@ TEST_F(NodeSecurity, WithoutItNothingIsAsked)
 {
     Config.Security.reset();
     TransportSettings settings;
-    EXPECT_EQ(AddSecurity(Config, "fastdds", settings, Members), std::nullopt);
-    EXPECT_FALSE(settings.Security);
+    AddSecurity(Config, settings, Members);
+    EXPECT_FALSE(settings.Member);
 }
 
-TEST_F(NodeSecurity, KeysThatFitTheConfigurationAreHandedToTheTransport)
+TEST_F(NodeSecurity, AMemberIsHandedToTheTransport)
 {
     Make();
     EXPECT_EQ(WhyNot(), "");
     TransportSettings settings;
-    EXPECT_TRUE(AddSecurity(Config, "fastdds", settings, Members));
-    ASSERT_TRUE(settings.Security);
-    EXPECT_EQ(settings.Security->Governance, Root + "/keys/uav1/governance_encrypt.p7s");
+    AddSecurity(Config, settings, Members);
+    ASSERT_TRUE(settings.Member);
+    EXPECT_EQ(settings.Member->Name(), "uav1");
 }
 
-TEST_F(NodeSecurity, TheLevelChoosesTheGovernance)
+TEST_F(NodeSecurity, OneMemberServesAllPaths)
 {
     Make();
-    Config.Security->Level = SecurityLevel::Sign;
-    TransportSettings settings;
-    AddSecurity(Config, "fastdds", settings, Members);
-    EXPECT_EQ(settings.Security->Governance, Root + "/keys/uav1/governance_sign.p7s");
-    EXPECT_FALSE(settings.Security->Encrypts);
+    TransportSettings first;
+    TransportSettings second;
+    AddSecurity(Config, first, Members);
+    AddSecurity(Config, second, Members);
+    EXPECT_EQ(first.Member, second.Member);
 }
 
 TEST_F(NodeSecurity, ThatThereAreNoKeysIsSaidWithFileAndLine)
@@ -123,95 +120,55 @@ TEST_F(NodeSecurity, AFolderThatTheSystemDoesNotShowIsSaidWithFileAndLine)
     EXPECT_THAT(WhyNot(), HasSubstr("uav1.yaml:5: the folder of keys "));
 }
 
+TEST_F(NodeSecurity, KeysOfAFormerFormatAreRefusedWithFileAndLine)
+{
+    std::filesystem::create_directories(Config.Security->Keys);
+    std::ofstream(Config.Security->Keys + "/certificate.pem") << "X.509";
+    EXPECT_THAT(WhyNot(), AllOf(HasSubstr("uav1.yaml:5: "), HasSubstr("keys of a former format"),
+                                HasSubstr("`rabit keys init`")));
+}
+
 TEST_F(NodeSecurity, AConfigurationThatNeedsMoreThanThePermissionsIsRefused)
 {
     Make();
     Config.Publish.push_back({.Message = "Photo", .Type = "Uav::Pose"});
-    EXPECT_THAT(WhyNot(), HasSubstr("does not allow what the configuration needs: write Photo of uav1;"));
-}
-
-TEST_F(NodeSecurity, AClockBeforeTheFirstDayIsSaidAndNothingElse)
-{
-    Make(std::time(nullptr) + 30 * Day);
-    EXPECT_THAT(WhyNot(), HasSubstr("uav1.yaml:5: the clock says "));
-    EXPECT_THAT(WhyNot(), HasSubstr("set the clock"));
-}
-
-TEST_F(NodeSecurity, AnotherBackendThanTheKeysAreForIsRefused)
-{
-    Make();
-    EXPECT_THAT(WhyNot("cyclonedds"), HasSubstr("another DDS implementation"));
-}
-
-TEST_F(NodeSecurity, KeysThatEndSoonAreAProblem)
-{
-    constexpr std::time_t end = 1795435200;  // 2026-11-23
-    EXPECT_EQ(KeysProblem(std::nullopt, end), std::nullopt);
-    EXPECT_EQ(KeysProblem(end, end - 31 * Day), std::nullopt);
-    ASSERT_TRUE(KeysProblem(end, end - 29 * Day));
-    EXPECT_THAT(KeysProblem(end, end - 29 * Day)->reason, HasSubstr("ends on 2026-11-23"));
-    EXPECT_THAT(KeysProblem(end, end + 1)->reason, HasSubstr("ended on 2026-11-23"));
-}
-
-class NodeMembership : public NodeSecurity
-{
-protected:
-    void MakeNew(int days = 365, std::time_t now = std::time(nullptr)) const
-    {
-        Keys::FleetAuthority::Init(Root + "/keys");
-        Keys::FleetAuthority(Root + "/keys")
-            .Add({.Node = "uav1", .Allowed = Keys::PermissionsFor(AccessOf(Config))},
-                 {.Now = now, .Days = days});
-    }
-};
-
-TEST_F(NodeMembership, IsHandedToTheTransportInsteadOfDdsSecurity)
-{
-    MakeNew();
-    TransportSettings settings;
-    EXPECT_EQ(AddSecurity(Config, "cyclonedds", settings, Members), std::nullopt);
-    ASSERT_TRUE(settings.Member);
-    EXPECT_EQ(settings.Member->Name(), "uav1");
-    EXPECT_FALSE(settings.Security);
-}
-
-TEST_F(NodeMembership, IsOneForAllPaths)
-{
-    MakeNew();
-    TransportSettings first;
-    TransportSettings second;
-    AddSecurity(Config, "fastdds", first, Members);
-    AddSecurity(Config, "cyclonedds", second, Members);
-    EXPECT_EQ(first.Member, second.Member);
-}
-
-TEST_F(NodeMembership, HasNoLevelThatSignsAlone)
-{
-    MakeNew();
-    Config.Security->Level = SecurityLevel::Sign;
-    EXPECT_THAT(WhyNot(), HasSubstr("uav1.yaml:5: there is no `level: sign` with the keys in"));
-}
-
-TEST_F(NodeMembership, IsRefusedForMoreThanThePermissions)
-{
-    MakeNew();
-    Config.Publish.push_back({.Message = "Photo", .Type = "Uav::Pose"});
     EXPECT_THAT(WhyNot(), HasSubstr("does not allow what the configuration needs: write Photo;"));
 }
 
-TEST_F(NodeMembership, IsRefusedUnderAnotherName)
+TEST_F(NodeSecurity, AToolWithTheKeysOfANodeIsToldToUseItsOwn)
 {
-    MakeNew();
+    Make();
+    Config.Publish.clear();
+    Config.Tool.emplace();
+    EXPECT_THAT(WhyNot(), HasSubstr("a tool needs keys of its own"));
+}
+
+TEST_F(NodeSecurity, AnotherNameIsRefused)
+{
+    Make();
     Config.Node = "uav2";
     EXPECT_THAT(WhyNot(), HasSubstr("is for the node `uav1`, and this is `uav2`"));
 }
 
-TEST_F(NodeMembership, ThatEndsSoonIsAProblem)
+TEST_F(NodeSecurity, AKeyThatOthersMayReadIsRefused)
+{
+    Make();
+    std::filesystem::permissions(Config.Security->Keys + "/key", std::filesystem::perms(0640));
+    EXPECT_THAT(WhyNot(), AllOf(HasSubstr("uav1.yaml:5: "), HasSubstr("not for its owner alone (mode 640)")));
+}
+
+TEST_F(NodeSecurity, AClockBeforeTheFirstDayKeepsNobodyFromStarting)
+{
+    Make(365, std::time(nullptr) + 30 * Day);
+    EXPECT_EQ(WhyNot(), "");
+}
+
+TEST_F(NodeSecurity, KeysThatEndSoonAreAProblem)
 {
     const std::time_t now = std::time(nullptr);
-    MakeNew(365, now);
+    Make(365, now);
     TransportSettings settings;
-    AddSecurity(Config, "fastdds", settings, Members);
+    AddSecurity(Config, settings, Members);
     EXPECT_TRUE(Members.Problems(now).empty());
     const std::vector<SettingsProblem> problems = Members.Problems(now + 340 * Day);
     ASSERT_EQ(problems.size(), 1U);
@@ -219,13 +176,13 @@ TEST_F(NodeMembership, ThatEndsSoonIsAProblem)
     EXPECT_THAT(problems.front().Text, HasSubstr("the certificate of this node ends on "));
 }
 
-TEST_F(NodeMembership, GoesOnAfterItsEndWithOneProblem)
+TEST_F(NodeSecurity, AfterItsEndTheNodeGoesOnWithOneProblem)
 {
     const std::time_t now = std::time(nullptr);
-    MakeNew(1, now - 100 * Day);
+    Make(1, now - 100 * Day);
     EXPECT_EQ(WhyNot(), "");
     TransportSettings settings;
-    AddSecurity(Config, "fastdds", settings, Members);
+    AddSecurity(Config, settings, Members);
     const std::vector<SettingsProblem> problems = Members.Problems(now);
     ASSERT_EQ(problems.size(), 1U);
     EXPECT_THAT(problems.front().Text, HasSubstr("ended on "));
@@ -254,26 +211,30 @@ protected:
 
 TEST_F(SecurityInAFile, IsRead)
 {
-    EXPECT_EQ(WhyNot("security: {keys: some/folder, level: sign}\n"), "");
+    EXPECT_EQ(WhyNot("security: {keys: some/folder}\n"), "");
     ASSERT_TRUE(Config.Security);
     EXPECT_EQ(Config.Security->Keys, "some/folder");
-    EXPECT_EQ(Config.Security->Level, SecurityLevel::Sign);
 }
 
-TEST_F(SecurityInAFile, EncryptsUnlessItIsToldOtherwise)
+TEST_F(SecurityInAFile, IsRefusedWithoutKeys)
 {
-    EXPECT_EQ(WhyNot("security: {keys: some/folder}\n"), "");
-    EXPECT_EQ(Config.Security->Level, SecurityLevel::Encrypt);
-}
-
-TEST_F(SecurityInAFile, IsRefusedWithoutKeysOrWithAnotherLevel)
-{
-    EXPECT_THAT(WhyNot("security: {level: sign}\n"), HasSubstr("keys"));
+    EXPECT_THAT(WhyNot("security: {}\n"), HasSubstr("keys"));
     EXPECT_THAT(WhyNot("security: {keys: ''}\n"), HasSubstr("keys"));
-    EXPECT_THAT(WhyNot("security: {keys: a, level: none}\n"), HasSubstr("level"));
     EXPECT_THAT(WhyNot("security: {keys: a, key: b}\n"), HasSubstr("key"));
-    EXPECT_THAT(WhyNot("domain: 231\nsecurity: {keys: a}\n"),
-                HasSubstr("with security the domain must be 0 to 230"));
+}
+
+TEST_F(SecurityInAFile, ALevelIsToBeRemoved)
+{
+    const auto told =
+        AllOf(HasSubstr(".yaml:"), HasSubstr("everything is encrypted and signed; remove `level`"));
+    EXPECT_THAT(WhyNot("security: {keys: a, level: sign}\n"), told);
+    EXPECT_THAT(WhyNot("security:\n  level: encrypt\n"), told);
+    EXPECT_THAT(WhyNot("paths: [{name: mesh, security: {keys: a, level: sign}}]\n"), told);
+}
+
+TEST_F(SecurityInAFile, IsForEveryDomain)
+{
+    EXPECT_EQ(WhyNot("domain: 232\nsecurity: {keys: a}\n"), "");
 }
 
 TEST_F(SecurityInAFile, IsOfTheNetworkTooForProgramsThatAreOtherNodesInIt)

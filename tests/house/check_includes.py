@@ -72,7 +72,6 @@ OWNERS = [
     (r"dds/|ddsc/|idlc/|idl/", "Cyclone DDS"),
     (r"yaml-cpp/", "yaml-cpp"),
     (r"openssl/", "OpenSSL"),
-    (r"tinyxml2\.h", "tinyxml2"),
     (r"zstd\.h", "zstd"),
     (r"zlib\.h", "zlib"),
     (r"CLI/", "CLI11"),
@@ -106,7 +105,7 @@ ALLOWED = {
     "gateway/links": {"links"},
     **{f"gateway/{room}": {"core", "idl", "transport", "gateway", "gateway messages", f"room {room}"}
        | ({"yaml-cpp"} if room == "configuration" else set())
-       | ({"OpenSSL", "tinyxml2", "envelope"} if room == "keys" else set())
+       | ({"OpenSSL", "envelope"} if room == "keys" else set())
        | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
     # Only files: no network, no messages.
     "gateway/recording/mcap": {"room mcap", "zstd", "zlib"},
@@ -121,7 +120,7 @@ ALLOWED = {
     "gateway/backfill": {"backfill", "core", "idl", "gateway", "gateway messages", "backfill messages", "recording", "OpenSSL", "room names",
                          "room mcap", "room recording", "room backfill"},
     "gateway/tool": {"core", "idl", "idl dynamic", "factory", "gateway", "node", "recording", "gateway messages", "transport",
-                     "network", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room presence",
+                     "network", "envelope", "guard", "CLI11", "room names", "room clocks", "room air", "room keys", "room wire", "room presence",
                      "room manager", "room mcap",
                      "room recording", "room merge", "room replay", "room backfill", "backfill messages"},
     "gateway/python": {"core", "idl", "idl dynamic", "factory", "gateway", "recording", "backfill", "gateway messages",

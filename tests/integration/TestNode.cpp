@@ -28,14 +28,9 @@ Rabit::PathRule PathIn(const std::string &text)
     std::getline(words, path.Name, ':');
     std::getline(words, path.Transport, ':');
     std::getline(words, path.Interfaces.emplace_back(), ':');
-    if (std::getline(words, budget, ':') && !budget.empty())
+    if (std::getline(words, budget))
     {
         path.Radio.Budget = std::stod(budget);
-    }
-    std::string keys;
-    if (std::getline(words, keys))
-    {
-        path.Security.emplace().Keys = keys;
     }
     return path;
 }
@@ -51,21 +46,8 @@ void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
     app.add_option("--peer", config.Peers, "Address of another node, for unicast discovery");
     app.add_flag("!--no-multicast", config.Multicast);
     app.add_option_function<std::string>(
-        "--keys",
-        [&config](const std::string &folder)
-        {
-            config.Security = config.Security.value_or(Rabit::SecuritySettings());
-            config.Security->Keys = folder;
-        },
+        "--keys", [&config](const std::string &folder) { config.Security.emplace().Keys = folder; },
         "Folder of the node's keys");
-    app.add_flag_function(
-        "--sign",
-        [&config](std::int64_t)
-        {
-            config.Security = config.Security.value_or(Rabit::SecuritySettings());
-            config.Security->Level = Rabit::SecurityLevel::Sign;
-        },
-        "With keys, only sign");
     app.add_option("--budget", config.Radio.Budget, "Bytes a second that the node may put on the air");
     app.add_option("--slowest-beat", config.Radio.SlowestBeat, "Milliseconds");
     app.add_option_function<std::vector<std::string>>(
@@ -77,14 +59,13 @@ void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config)
                 config.Paths.push_back(PathIn(text));
             }
         },
-        "NAME:TRANSPORT:INTERFACE[:BUDGET[:KEYS]], the best first; in place of --interface and --budget");
+        "NAME:TRANSPORT:INTERFACE[:BUDGET], the best first; in place of --interface and --budget");
     app.add_option_function<int>(
         "--lease", [&config](int seconds) { config.Lease = std::chrono::seconds(seconds); },
         "DDS lease, in seconds");
 }
 
-void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers,
-         const std::function<std::shared_ptr<Rabit::Transport>(std::shared_ptr<Rabit::Transport>)> &wrap)
+void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers)
 {
     Rabit::ValidateTransportName(config, Rabit::AvailableTransports(), Rabit::KnownTransports());
     Rabit::RabitReactor reactor;
@@ -92,14 +73,8 @@ void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::
     {
         reactor.AddManager(std::move(manager));
     }
-    reactor.AddManager(std::make_unique<Rabit::GatewayManager>(
-        config, Rabit::TransportsOf(config,
-                                    [&wrap](const std::string &name)
-                                    {
-                                        std::shared_ptr<Rabit::Transport> backend =
-                                            Rabit::MakeTransport(name);
-                                        return wrap ? wrap(std::move(backend)) : backend;
-                                    })));
+    reactor.AddManager(
+        std::make_unique<Rabit::GatewayManager>(config, Rabit::TransportsOf(config, Rabit::MakeTransport)));
     reactor.Run();
 }
 

@@ -3,7 +3,6 @@
 
 #include <rabit/RabitManager.h>
 #include <rabit/gateway/GatewayConfig.h>
-#include <rabit/transport/Transport.h>
 
 #include <functional>
 #include <memory>
@@ -20,11 +19,9 @@ namespace TestNode
 // Adds the options for the node's name and its network.
 void DescribeNetwork(CLI::App &app, Rabit::GatewayConfig &config);
 
-// Runs the managers and a gateway until SIGINT or SIGTERM, over the backend that the configuration names,
-// or the one that `wrap` makes of it. Throws Rabit::ConfigError.
-void Run(
-    const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers,
-    const std::function<std::shared_ptr<Rabit::Transport>(std::shared_ptr<Rabit::Transport>)> &wrap = {});
+// Runs the managers and a gateway until SIGINT or SIGTERM, over the backends that the configuration names.
+// Throws Rabit::ConfigError.
+void Run(const Rabit::GatewayConfig &config, std::vector<std::unique_ptr<Rabit::RabitManager>> managers);
 
 // Parses the arguments and runs the body. Returns the exit code: 0; 1 if the body failed; 2 if an option is
 // wrong.

@@ -5,7 +5,6 @@
 #include "Padding.h"
 #include "PictureClerk.h"
 #include "StateClerk.h"
-#include "StolenKeys.h"
 #include "TestNode.h"
 #include "gateway.idl.h"
 #include "ledger.idl.h"
@@ -40,7 +39,6 @@ struct Options
     std::string LedgerFile;
     std::vector<std::string> To;
     std::vector<std::string> AcceptFrom = {"*"};
-    std::string Stolen;
     std::uint64_t Count = 0;
     double Rate = 100;
     std::size_t Payload = 100;
@@ -315,7 +313,6 @@ void Describe(CLI::App &app, Options &o)
     app.add_flag("--orders", o.TakesOrders, "Orders (Orders.h) by lines on standard input");
     app.add_option("--rate", o.Rate, "Notes a second to each");
     app.add_option("--accept-from", o.AcceptFrom, "Nodes whose notes are taken; default all");
-    app.add_option("--stolen", o.Stolen, "Folder of keys that are used whoever's they are");
     app.add_option("--payload", o.Payload, "Octets of padding in each note that is sent");
     app.add_option("--capacity", o.Capacity, "Notes that may wait in one outbox");
     app.add_option("--expire", o.ExpireS, "Seconds after which a note is too old; 0: never");
@@ -373,13 +370,7 @@ void Run(Options &options)
         TestNode::PictureClerk::Configure(config);
         managers.push_back(std::make_unique<TestNode::PictureClerk>(options.Pictures));
     }
-    if (options.Stolen.empty())
-    {
-        TestNode::Run(config, std::move(managers));
-        return;
-    }
-    TestNode::Run(config, std::move(managers),
-                  [&](auto backend) { return TestNode::WithStolenKeys(backend, options.Stolen); });
+    TestNode::Run(config, std::move(managers));
 }
 }  // namespace
 

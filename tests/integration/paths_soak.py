@@ -6,7 +6,7 @@ On each node run a ledger node, which exchanges commands both ways, and a node t
 ground station requests what it missed. Judged are outcomes alone: no command is lost, comes twice or out of order; each post in a
 recording of an aircraft is in that of the ground station, once, byte for byte; the modem carries no more than the budgets.
 
-Usage: paths_soak.py PROGRAMS [--seconds N] [--transport MESH[,MODEM]]...
+Usage: paths_soak.py PROGRAMS [--seconds N] [--keys RABIT] [--transport MESH[,MODEM]]...
 Several --transport fly at once, each in a network of its own. Exit code 0: as it has to be; 1: something is wrong; 77: this
 machine does not allow it."""
 
@@ -18,6 +18,7 @@ import threading
 import time
 
 import field
+import fleet_keys
 import harness
 import judge
 import paths_test
@@ -45,12 +46,18 @@ BEYOND = 1.05
 class Recorders(backfill_fleet.Fleet):
     """The programs that record themselves, with both radios."""
 
-    def __init__(self, ground, programs, transports, folder):
-        super().__init__(ground, programs, transports["mesh"], folder)
-        self._transports = transports
+    def __init__(self, ground, programs, transports, rabit):
+        super().__init__(ground, programs, transports["mesh"], ground.folder)
+        self._transports, self._rabit = transports, rabit
+
+    def write(self, node, more=""):
+        super().write(node, more)
+        if self._rabit:
+            fleet_keys.add(self._rabit, self.folder, node)
 
     def network(self, node):
-        return "paths:\n" + "".join(
+        security = f"security: {{keys: {fleet_keys.of(self.folder, node)}}}\n" if self._rabit else ""
+        return security + "paths:\n" + "".join(
             f"  - {{name: {name}, interfaces: [{device}], transport: {self._transports[name]}"
             + (f", radio: {{budget: {BUDGET}B/s}}" if name == "modem" else "") + "}\n"
             for name, device in paths_test.DEVICES.items())
@@ -95,15 +102,16 @@ class Modem(threading.Thread):
 class Flight:
     """All programs on the nodes, and their faults."""
 
-    def __init__(self, ground, programs, transports, seconds):
+    def __init__(self, ground, programs, transports, seconds, rabit):
         self.ground = ground
         self._until = time.monotonic() + seconds
         self._paths = [word for name, device in paths_test.DEVICES.items() for word in
                        ("--path", f"{name}:{transports[name]}:{device}" + (f":{BUDGET}" if name == "modem" else ""))]
+        self._keys = fleet_keys.make(rabit, ground.folder, [self.orders(node) for node in NODES]) if rabit else {}
         self._scenario = {"nodes": {self.orders(node): [] for node in NODES},
                           "inside": {self.orders(node): node for node in NODES}}
         self.ledgers = run_scenario.Fleet(ground, pathlib.Path(programs, "ledger_node"), transports["mesh"], self._scenario)
-        self.recorders = Recorders(ground, programs, transports, ground.folder)
+        self.recorders = Recorders(ground, programs, transports, rabit)
         for node in NODES:
             self.recorders.write(node)
             self.start(node)
@@ -116,7 +124,8 @@ class Flight:
     def start(self, node):
         left_s = max(1.0, self._until - time.monotonic())
         to = [word for other in (AIRCRAFT if node == "ground" else ["ground"]) for word in ("--to", self.orders(other))]
-        self._scenario["nodes"][self.orders(node)] = [*self._paths, *to, "--count", str(int(RATE * left_s)), "--rate", str(RATE)]
+        self._scenario["nodes"][self.orders(node)] = [*self._paths, *fleet_keys.arguments(self._keys, self.orders(node)), *to,
+                                                      "--count", str(int(RATE * left_s)), "--rate", str(RATE)]
         self.ledgers.start(self.orders(node))
         self.recorders.fly(node)
 
@@ -190,13 +199,13 @@ def read(ledgers):
             yield from judge.read_ledger(lines)
 
 
-def soak(programs, transport, seconds):
+def soak(programs, transport, seconds, rabit):
     """What is wrong, by what was judged."""
     mesh, modem = (transport.split(",") * 2)[:2]
     verdicts = {}
     with paths_test.TwoNetworks(NODES, MODEM_KBIT) as ground:
         modem_watch = Modem(ground)
-        flight = Flight(ground, programs, {"mesh": mesh, "modem": modem}, seconds)
+        flight = Flight(ground, programs, {"mesh": mesh, "modem": modem}, seconds, rabit)
         faults = flight.endure()
         ground.heal()
         verdicts["settled"] = flight.settle()
@@ -214,7 +223,8 @@ def soak(programs, transport, seconds):
 
 def fly_all(options):
     """A process each, since each makes a network."""
-    own = [sys.executable, __file__, options.programs, "--seconds", str(options.seconds)]
+    own = [sys.executable, __file__, options.programs, "--seconds", str(options.seconds),
+           *(["--keys", options.keys] if options.keys else [])]
     flights = [harness.Process([*own, "--transport", transport],
                                on_line=lambda text, name=transport: print(f"{name}: {text}", flush=True))
                for transport in options.transport]
@@ -228,12 +238,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", help="folder of ledger_node, backfill_node and backfill_judge")
     parser.add_argument("--seconds", type=int, default=3600)
+    parser.add_argument("--keys", metavar="RABIT", help="all programs have keys, which this program makes")
     parser.add_argument("--transport", action="append", required=True, help="of the mesh, and of the modem if that has another")
     options = parser.parse_args()
     if len(options.transport) > 1:
         sys.exit(fly_all(options))
     with field.skipping():
-        verdicts = soak(options.programs, options.transport[0], options.seconds)
+        verdicts = soak(options.programs, options.transport[0], options.seconds, options.keys)
     for name, wrong in verdicts.items():
         print(f"{name}: {'as it has to be' if not wrong else f'{len(wrong)} wrong'}")
         for text in wrong[:20]:

@@ -60,13 +60,13 @@ def main():
     parser.add_argument("--cuts", type=int, default=3)
     parser.add_argument("--modem", type=float, default=1000, help="kbit/s")
     parser.add_argument("--budget", type=int, help="bytes a second on the modem")
-    parser.add_argument("--keys", metavar="RABIT", help="the modem alone has keys, which this program makes")
+    parser.add_argument("--keys", metavar="RABIT", help="the nodes have keys, which this program makes")
     options = parser.parse_args()
     mesh, modem = (options.transports.split(",") * 2)[:2]
     with TwoNetworks(["ground", "uav1"], options.modem) as ground:
-        keys = fleet_keys.make(options.keys, ground.folder, dict.fromkeys(ground.nodes, modem)) if options.keys else {}
-        paths = {node: ["--path", f"mesh:{mesh}:eth0", "--path",
-                        f"modem:{modem}:eth1:{options.budget or ''}:{keys.get(node, '')}".rstrip(":")] for node in ground.nodes}
+        keys = fleet_keys.make(options.keys, ground.folder, ground.nodes) if options.keys else {}
+        paths = {node: ["--path", f"mesh:{mesh}:eth0", "--path", f"modem:{modem}:eth1:{options.budget or ''}".rstrip(":"),
+                        *fleet_keys.arguments(keys, node)] for node in ground.nodes}
         paths["ground"] += ["--to", "uav1", "--orders", "--rate", "1000000", "--capacity", "5000", "--payload", "50"]
         fleet = run_scenario.Fleet(ground, options.ledger_node, None,
                                    {"nodes": paths, "transports": dict.fromkeys(ground.nodes, mesh), "stateless": ground.nodes})

@@ -11,6 +11,7 @@
 
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -183,6 +184,15 @@ TEST_F(RunNodeTest, OptionsNameTheInterfaces)
     };
     EXPECT_EQ(Run({"--check", "--interface", "lo", "--interface", "127.0.0.2"}), 0);
     EXPECT_THAT(interfaces, ::testing::ElementsAre("lo", "127.0.0.2"));
+}
+
+TEST_F(RunNodeTest, TheEnvironmentNamesTheFolderOfTheKeys)
+{
+    ASSERT_EQ(::setenv("RABIT_NODE_KEYS", "/nowhere/keys", 1), 0);
+    EXPECT_EQ(Run({"--check"}), ExitBadInput);
+    EXPECT_THAT(_err, HasSubstr("/nowhere/keys"));
+    ASSERT_EQ(::unsetenv("RABIT_NODE_KEYS"), 0);
+    EXPECT_EQ(Run({"--check"}), 0);
 }
 
 TEST_F(RunNodeTest, NamesAPublishedMessageThatNoManagerRegisters)

@@ -6,13 +6,13 @@
 #include <map>
 #include <vector>
 
-#include "common/Rtps.h"
+#include "common/Ledger.h"
 
 namespace Rabit::Rtps
 {
 
-// The hosts whose last datagrams told guard and vendor nothing: nodes there may wait for what introduces this
-// one. Bounded. Time is passed in. Not thread-safe.
+// Where nodes may wait for what introduces this one, since their last datagrams told guard and vendor
+// nothing. Bounded. Time is passed in. Not thread-safe.
 class HeardStrangers
 {
 public:
@@ -20,31 +20,32 @@ public:
 
     // If there are more, the one that was heard last the longest time ago is forgotten.
     static constexpr std::size_t Most = 16;
-    // After a host's last datagram: nodes repeat what introduces them.
+    // After the last datagram from there: nodes repeat what introduces them.
     static constexpr std::chrono::seconds Remembered{3};
 
-    void Heard(const HostAddress &host, TimePoint now)
+    // `at`: where the node takes discovery data. With port 0 nothing but its host is known.
+    void Heard(const Place &at, TimePoint now)
     {
-        if (_hosts.size() >= Most && !_hosts.contains(host))
+        if (_places.size() >= Most && !_places.contains(at))
         {
-            _hosts.erase(std::min_element(_hosts.begin(), _hosts.end(),
-                                          [](const auto &a, const auto &b) { return a.second < b.second; }));
+            _places.erase(std::min_element(_places.begin(), _places.end(),
+                                           [](const auto &a, const auto &b) { return a.second < b.second; }));
         }
-        _hosts.insert_or_assign(host, now);
+        _places.insert_or_assign(at, now);
     }
-    std::vector<HostAddress> Current(TimePoint now)
+    std::vector<Place> Current(TimePoint now)
     {
-        std::erase_if(_hosts, [now](const auto &entry) { return now - entry.second > Remembered; });
-        std::vector<HostAddress> current;
-        for (const auto &[host, heard] : _hosts)
+        std::erase_if(_places, [now](const auto &entry) { return now - entry.second > Remembered; });
+        std::vector<Place> current;
+        for (const auto &[place, heard] : _places)
         {
-            current.push_back(host);
+            current.push_back(place);
         }
         return current;
     }
 
 private:
-    std::map<HostAddress, TimePoint> _hosts;  // when they were heard last
+    std::map<Place, TimePoint> _places;  // when they were heard last
 };
 
 }  // namespace Rabit::Rtps

@@ -34,7 +34,8 @@ struct Place
 // sample, until its lease ends. So a participant is a *stranger* until it has spoken: until one of its own
 // endpoints has sent a sample, a heartbeat or an acknowledgement. The nodes of a fleet speak as soon as they
 // have met. Of the programs that only listen, the first few that have acknowledged our announcements are no
-// strangers either.
+// strangers either. In a fleet with keys a member is no stranger once it is announced with the name in its
+// certificate.
 //
 // - Strangers are few, and have few endpoints, for each host and in all.
 // - A stranger is sent as many bytes as came from it. All strangers share a small allowance besides. Those of

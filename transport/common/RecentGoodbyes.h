@@ -14,12 +14,11 @@ namespace Rabit::Rtps
 {
 
 // A goodbye overtakes announcements that were sent before it, on another socket by milliseconds, on a full
-// channel by seconds. The participant must not come back by them. But a goodbye may be forged, also where
-// nodes have keys: nothing in it is signed. So a participant is accepted again if it goes on: datagrams that
-// were held up come together, and those of a living participant come again and again. Times are those of the
-// receipt, so a session that shares the guard's goodbyes drops no announcement that the guard has let through
-// after one: implementations report a participant once. Bounded: a full table forgets the oldest.
-// Thread-safe.
+// channel by seconds. The participant must not come back by them. But a goodbye may be forged. So a
+// participant is accepted again if it goes on: datagrams that were held up come together, and those of a
+// living participant come again and again. Times are those of the receipt, so a session that shares the
+// guard's goodbyes drops no announcement that the guard has let through after one: implementations report a
+// participant once. Bounded: a full table forgets the oldest. Thread-safe.
 class RecentGoodbyes
 {
 public:
@@ -34,9 +33,15 @@ public:
     static constexpr std::size_t Most = 1024;
 
     // A repeated goodbye does not count, so that repetitions cannot keep a participant away for longer.
-    void Note(const GuidPrefix &peer, TimePoint now) { Note(peer, {.At = now}); }
-    // This node forgets a participant that has said no goodbye. It is ignored for `Overtaken`.
-    void Ignore(const GuidPrefix &peer, TimePoint now) { Note(peer, {.At = now, .HeardAgain = now}); }
+    void Note(const GuidPrefix &peer, TimePoint now)
+    {
+        const std::lock_guard lock(_mutex);
+        if (!IsNoted(peer, now))
+        {
+            _goodbyes.Put(peer, {.At = now});
+            _isEmpty = false;
+        }
+    }
     bool Has(const GuidPrefix &peer, TimePoint now) const
     {
         const std::lock_guard lock(_mutex);
@@ -80,15 +85,6 @@ private:
         std::optional<TimePoint> HeardAgain{};  // the first datagram behind `Overtaken`
     };
 
-    void Note(const GuidPrefix &peer, const Goodbye &goodbye)
-    {
-        const std::lock_guard lock(_mutex);
-        if (!IsNoted(peer, goodbye.At))
-        {
-            _goodbyes.Put(peer, goodbye);
-            _isEmpty = false;
-        }
-    }
     bool IsNoted(const GuidPrefix &peer, TimePoint now) const
     {
         const Goodbye *const found = _goodbyes.Find(peer);

@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <list>
 #include <map>
 #include <utility>
@@ -15,7 +14,7 @@ namespace Rabit
 
 // Gives each key a number. Remembers the `Most` keys that were used last. A forgotten key gets another number
 // when it is back: numbers rise, and none is given twice. Not thread-safe.
-template <typename Key, typename Less = std::less<Key>>
+template <typename Key>
 class RecentNumbers
 {
 public:
@@ -32,21 +31,12 @@ public:
         if (_used.size() >= Most)
         {
             _byKey.erase(_used.back().first);
-            _byNumber.erase(_used.back().second);
             _used.pop_back();
         }
         _used.emplace_front(key, _next);
         _byKey.emplace(key, _used.begin());
-        _byNumber.emplace(_next, _used.begin());
-        RABIT_ASSERT(_byKey.size() == _used.size() && _byNumber.size() == _used.size());
+        RABIT_ASSERT(_byKey.size() == _used.size());
         return {_next++, true};
-    }
-
-    // The key with that number; null: it is forgotten.
-    const Key *KeyOf(std::uint64_t number) const
-    {
-        const auto found = _byNumber.find(number);
-        return found == _byNumber.end() ? nullptr : &found->second->first;
     }
 
     std::size_t Size() const { return _used.size(); }
@@ -55,8 +45,7 @@ private:
     using List = std::list<std::pair<Key, std::uint64_t>>;
 
     List _used;  // the one used last comes first
-    std::map<Key, typename List::iterator, Less> _byKey;
-    std::map<std::uint64_t, typename List::iterator> _byNumber;
+    std::map<Key, typename List::iterator> _byKey;
     std::uint64_t _next = 0;
 };
 

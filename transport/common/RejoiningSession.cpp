@@ -161,10 +161,9 @@ std::vector<SettingsProblem> RejoiningSession::NetworkProblems() const
 
 bool RejoiningSession::BeginTurn(std::size_t mostBytes)
 {
-    // With Security, a vendor may protect a datagram as a whole.
     constexpr std::size_t Headers = 20 + 8;  // IPv4, UDP
     _turnOf = _shared->Left;
-    return !_settings.Security && mostBytes > Headers && _sending->Begin(mostBytes - Headers);
+    return mostBytes > Headers && _sending->Begin(mostBytes - Headers);
 }
 
 // The kept datagrams belong to the session of the backend that was there when the turn began.

@@ -33,8 +33,6 @@ constexpr EntityId ParticipantWriter = 0x000100c2;
 constexpr EntityId PublicationsWriter = 0x000003c2;
 constexpr EntityId SubscriptionsWriter = 0x000004c2;
 constexpr EntityId LivelinessWriter = 0x000200c2;
-// DDS Security, 7.4.4: writes the messages of handshakes.
-constexpr EntityId HandshakeWriter = 0x000201c3;
 
 // True if the entity is a builtin one of the protocol (9.3.1.2).
 constexpr bool IsBuiltin(EntityId entity)
@@ -56,14 +54,6 @@ enum class SubmessageKind : std::uint8_t
     HeartbeatFrag = 0x13,
     Data = 0x15,
     DataFrag = 0x16,
-    // DDS Security, 7.3.6.2: encrypted or signed submessages, and their prefixes and postfixes.
-    FirstSecure = 0x30,
-    SecureBody = 0x30,
-    SecurePrefix = 0x31,
-    SecurePostfix = 0x32,
-    MessagePrefix = 0x33,
-    MessagePostfix = 0x34,
-    LastSecure = 0x35,
     // Fast DDS's own, at the end of each message that it sends.
     Statistics = 0x80
 };
@@ -83,10 +73,6 @@ constexpr bool IsDelivery(SubmessageKind kind)
     return (number >= 0x06 && number <= 0x08) || kind == SubmessageKind::NackFrag ||
            kind == SubmessageKind::HeartbeatFrag || kind == SubmessageKind::Data ||
            kind == SubmessageKind::DataFrag;
-}
-constexpr bool IsSecure(SubmessageKind kind)
-{
-    return kind >= SubmessageKind::FirstSecure && kind <= SubmessageKind::LastSecure;
 }
 
 // Parameters (9.6.3); the last ones are vendor-specific.
@@ -132,12 +118,6 @@ enum : std::uint16_t
     KeyHash = 0x0070,
     StatusInfo = 0x0071,
     DataRepresentation = 0x0073,
-    // OMG DDS Security 1.1, 7.4.1
-    IdentityToken = 0x1001,
-    PermissionsToken = 0x1002,
-    EndpointSecurityInfo = 0x1004,
-    ParticipantSecurityInfo = 0x1005,
-    IdentityStatusToken = 0x1006,
     DisablePositiveAcks = 0x8005,
     RelatedSample = 0x800f
 };

@@ -108,38 +108,6 @@ void SessionLog::Impostor(const std::string &node) noexcept
           });
 }
 
-void SessionLog::Stranger(const std::string &node) noexcept
-{
-    Count(_strangers,
-          [&]
-          {
-              return (node.empty() ? std::string("somebody") : "one that calls itself " + node) +
-                     " was not let in: its certificate or its permissions are not of this fleet, out of "
-                     "date, or revoked";
-          });
-}
-
-void SessionLog::AuthenticationFailed(const std::string &node) noexcept
-{
-    Count(_authenticationFailures,
-          [&]
-          {
-              return "the exchange of keys with " +
-                     (node.empty() ? std::string("a participant") : "one that calls itself " + node) +
-                     " came to no end: both sides begin anew";
-          });
-}
-
-void SessionLog::OtherLevel(const std::string &node) noexcept
-{
-    Count(_otherLevels,
-          [&]
-          {
-              return "one that calls itself " + node +
-                     " has another level of security than this node: they do not hear each other";
-          });
-}
-
 TransportCounters SessionLog::Read() const
 {
     TransportCounters counters;

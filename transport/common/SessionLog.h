@@ -32,12 +32,6 @@ public:
     void MalformedDatagram() noexcept;
     // A participant calls itself `node` and has the certificate of another node, or none.
     void Impostor(const std::string &node) noexcept;
-    // The certificate or the permissions of a participant that calls itself `node` were refused.
-    void Stranger(const std::string &node) noexcept;
-    // No keys were exchanged with a participant that calls itself `node`; both sides begin anew.
-    void AuthenticationFailed(const std::string &node) noexcept;
-    // A participant that calls itself `node` is protected less, or more, than this node.
-    void OtherLevel(const std::string &node) noexcept;
     void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }
 
     // Count datagrams given to sockets; `bytes` are those of all these datagrams, without IP and UDP headers.
@@ -88,9 +82,6 @@ private:
     std::atomic<std::uint64_t> _malformedSamples{0};
     std::atomic<std::uint64_t> _malformedDatagrams{0};
     std::atomic<std::uint64_t> _impostors{0};
-    std::atomic<std::uint64_t> _strangers{0};
-    std::atomic<std::uint64_t> _authenticationFailures{0};
-    std::atomic<std::uint64_t> _otherLevels{0};
     Sent _discovery;
     Sent _samples;
 };

@@ -81,8 +81,6 @@ std::vector<SettingsProblem> FindImpossible(const TransportSettings &settings)
     if (settings.Member != nullptr)
     {
         const std::string &name = settings.Member->Name();
-        refuse(settings.Security.has_value(), "security", "",
-               "a member of a fleet with keys does not use DDS Security: leave one of both out");
         refuse(name != settings.Node, "security", "",
                "the keys are those of node " + name + ", not of " + settings.Node +
                    ": use the keys of this node");

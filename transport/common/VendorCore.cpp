@@ -33,7 +33,6 @@ std::set<Rtps::HostAddress> HostsOf(const std::vector<std::string> &peers)
 
 VendorCore::VendorCore(const TransportSettings &settings, const SessionContext &context)
     : _context(context),
-      _security(settings.Security),
       _accounts(std::make_shared<Rtps::Ledger>(HostsOf(settings.Peers))),
       _peerGate(context.Log, "peer events")
 {
@@ -96,11 +95,6 @@ std::vector<SettingsProblem> VendorCore::Problems() const
 void VendorCore::Appeared(const Rtps::GuidPrefix &participant, const ParticipantIdentity &who,
                           const PeerPlace &place)
 {
-    if (_security && _security->MayBe && !_security->MayBe(who.Node, participant))
-    {
-        Log()->Impostor(who.Node);
-        return;
-    }
     Identity identity;
     {
         const std::lock_guard lock(_mutex);
@@ -116,7 +110,7 @@ void VendorCore::Appeared(const Rtps::GuidPrefix &participant, const Participant
     Tell(PeerEvent::Kind::Appeared, identity);
 }
 
-std::shared_ptr<const PeerSession> VendorCore::Gone(const Rtps::GuidPrefix &participant, PeerEvent::Kind how)
+void VendorCore::Gone(const Rtps::GuidPrefix &participant, PeerEvent::Kind how)
 {
     Identity identity;
     {
@@ -124,13 +118,12 @@ std::shared_ptr<const PeerSession> VendorCore::Gone(const Rtps::GuidPrefix &part
         identity = _peers.Remove(participant);
         if (identity == nullptr)
         {
-            return nullptr;
+            return;
         }
         _places.erase(participant);
         _gone.Put(participant, identity);
     }
     Tell(how, identity);
-    return identity;
 }
 
 void VendorCore::Tell(PeerEvent::Kind what, const Identity &who)

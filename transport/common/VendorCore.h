@@ -56,16 +56,14 @@ protected:
     VendorCore(const TransportSettings &settings, const SessionContext &context);
     ~VendorCore() = default;
 
-    // The vendor has found a Rabit node, perhaps once more. It is not admitted if its keys are not those of
-    // the node that it says (TransportSecurity), or if it said goodbye a moment ago: the vendor may handle an
-    // announcement after a goodbye that overtook it.
+    // The vendor has found a Rabit node, perhaps once more. It is not admitted if it said goodbye a moment
+    // ago: the vendor may handle an announcement after a goodbye that overtook it.
     void Appeared(const Rtps::GuidPrefix &participant, const ParticipantIdentity &who,
                   const PeerPlace &place);
-    // The vendor has lost the participant. Returns its identity; nullptr if it was not admitted.
-    std::shared_ptr<const PeerSession> Gone(const Rtps::GuidPrefix &participant, PeerEvent::Kind how);
+    // The vendor has lost the participant.
+    void Gone(const Rtps::GuidPrefix &participant, PeerEvent::Kind how);
 
     const SessionContext _context;
-    const std::optional<TransportSecurity> _security;
     // The guard notes them, before the vendor sees them.
     const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
     // The guard keeps them. The session closes that of a participant which the vendor has lost.

@@ -45,6 +45,7 @@ void BlobExchange::Want(BlobKind kind, const Hash &hash, const Source &from, Tim
         found->second.Kind = kind;
         found->second.From = from;
         found->second.Progress = now;
+        found->second.Since = now;
         found->second.Retry.Begin(now + Gather + ShareOf(RequestSpread));
     }
     Lack &lack = found->second;
@@ -53,14 +54,35 @@ void BlobExchange::Want(BlobKind kind, const Hash &hash, const Source &from, Tim
     {
         lack.From = from;
     }
-    else if (now - lack.Progress > SourcePatience)
+    else if (MayReplace(lack, from, now))
     {
-        // The parts may be wrong: they came from the former source.
-        DropParts(lack);
-        lack.From = from;
-        lack.Progress = now;
-        lack.Retry.Hasten(now + Gather);
+        Replace(lack, from, now);
     }
+}
+
+bool BlobExchange::MayReplace(const Lack &lack, const Source &from, TimePoint now)
+{
+    const int turns = lack.Tried.contains(from.Number) ? 2 : 1;
+    return now - lack.Progress > turns * SourcePatience ||
+           (from.Number != lack.From.Number && now - lack.Since > turns * lack.Turn);
+}
+
+void BlobExchange::Replace(Lack &lack, const Source &from, TimePoint now)
+{
+    // The parts may be wrong: they came from the former source.
+    DropParts(lack);
+    if (from.Number != lack.From.Number)
+    {
+        if (lack.Tried.size() < MostTried)
+        {
+            lack.Tried.insert(lack.From.Number);
+        }
+        lack.Since = now;
+        lack.Turn = std::min(2 * lack.Turn, LongestTurn);
+    }
+    lack.From = from;
+    lack.Progress = now;
+    lack.Retry.Hasten(now + Gather);
 }
 
 void BlobExchange::Drop(const Hash &hash)
@@ -101,6 +123,7 @@ void BlobExchange::Offer(Epoch in, TimePoint now)
     {
         found = _offers.emplace(in, Offered{}).first;
         found->second.Timer.Begin(now + ShareOf(OfferSpread));
+        found->second.Latest = now + ShareOf(OfferSpread) + LongestPostponed;
     }
     if (found != _offers.end())
     {
@@ -129,7 +152,8 @@ std::optional<BlobExchange::Blob> BlobExchange::Received(const BlobMessage &mess
     const auto offered = _offers.find(from.In);
     if (message.Part->Kind == BlobKind::Bulletin && message.Part->Of == own.Of && offered != _offers.end())
     {
-        offered->second.Timer.Postpone(now + FirstOffer + ShareOf(OfferSpread));
+        const TimePoint others = now + FirstOffer + ShareOf(OfferSpread);
+        offered->second.Timer.Postpone(std::min(others, offered->second.Latest));
     }
     Keep(*message.Part, from, now);
     return Complete(message.Part->Of, now);
@@ -296,6 +320,7 @@ void BlobExchange::MakeOffers(TimePoint now)
         }
         WantPart(BlobKind::Bulletin, 0, each->first, now);
         offered.Timer.Done(now);
+        offered.Latest = *offered.Timer.Due() + LongestPostponed;
         ++each;
     }
 }

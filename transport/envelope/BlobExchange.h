@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "envelope/BlobMessage.h"
@@ -54,8 +55,16 @@ public:
     static constexpr std::chrono::seconds LongestOffer{5};
     // Offers of several sessions are spread over this time.
     static constexpr std::chrono::milliseconds OfferSpread{200};
+    // Others postpone an offer by at most this time.
+    static constexpr std::chrono::seconds LongestPostponed{2};
     // A source that has sent nothing for this time is replaced by another one that has the blob.
     static constexpr std::chrono::seconds SourcePatience{1};
+    // So is a certificate that had its turn and did not bring the whole, by another certificate. The next one
+    // has twice the time: the largest blob takes 14 s. One that was replaced waits twice as long for its next
+    // turn. So a member that sends wrong parts, or sends them slowly, keeps a blob back for seconds alone.
+    static constexpr std::chrono::milliseconds FirstTurn{3000};
+    static constexpr std::chrono::milliseconds LongestTurn{60'000};
+    static constexpr std::size_t MostTried = 8;
     // A blob that nobody named for this time is wanted no longer.
     static constexpr std::chrono::seconds Forgotten{10};
     // Of each BlobKind.
@@ -70,7 +79,7 @@ public:
     {
         SessionTag Tag = 0;
         Epoch In = 0;
-        Serial Number = 0;  // of its certificate, which a bulletin needs
+        Serial Number = 0;  // of its certificate
     };
     struct Blob
     {
@@ -124,7 +133,10 @@ private:
         Source From{};
         TimePoint Named{};     // when a session named it last
         TimePoint Progress{};  // when the source was chosen, or sent a part
-        std::size_t Size = 0;  // 0: not known yet
+        TimePoint Since{};     // when the turn of its certificate began
+        std::chrono::milliseconds Turn = FirstTurn;
+        std::set<Serial> Tried{};  // certificates that were replaced
+        std::size_t Size = 0;      // 0: not known yet
         std::map<std::size_t, std::vector<std::uint8_t>> Parts{};
         std::size_t Bytes = 0;
         bool IsSpared = false;  // another session has asked for the same since this one did
@@ -148,6 +160,7 @@ private:
     struct Offered
     {
         TimePoint Heard{};
+        TimePoint Latest{};  // others postpone it no longer
         BackoffTimer<TimePoint> Timer{{FirstOffer, LongestOffer}};
     };
 
@@ -157,6 +170,8 @@ private:
     template <typename Is>
     void DropIf(const Is &is);
     void DropParts(Lack &want);
+    static bool MayReplace(const Lack &lack, const Source &from, TimePoint now);
+    void Replace(Lack &lack, const Source &from, TimePoint now);
     void Keep(const BlobPart &part, const Source &from, TimePoint now);
     std::optional<Blob> Complete(const Hash &hash, TimePoint now);
     void Take(const BlobRequest &request, const Source &from, bool isProven, TimePoint now);

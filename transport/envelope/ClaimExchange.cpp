@@ -34,6 +34,7 @@ void ClaimExchange::Heard(SessionTag session, Standing standing, Epoch in, TimeP
     question.In = in;
     question.Of = standing;
     question.Heard = now;
+    question.Left = MostUnverified;
     const bool isQuiet = now - series.Heard >= Forgotten;
     series.Heard = now;
     const TimePoint soon = std::max(now + Gather, question.AskedAt + FirstRetry);
@@ -55,7 +56,7 @@ void ClaimExchange::Heard(SessionTag session, Standing standing, Epoch in, TimeP
 
 bool ClaimExchange::IsActive(const Series &series, const Question &question)
 {
-    return series.Retry.Due() && question.Heard + Patience >= *series.Retry.Due();
+    return series.Retry.Due() && question.Heard + Patience >= *series.Retry.Due() && question.Left > 0;
 }
 
 void ClaimExchange::Forget(Series &series, TimePoint now)
@@ -268,7 +269,7 @@ void ClaimExchange::TakeQuestions(Outgoing &claim, TimePoint now)
     {
         for (auto &[session, question] : series.Questions)
         {
-            const bool isAsked = question.In == claim.In &&
+            const bool isAsked = question.In == claim.In && question.Left > 0 &&
                                  (question.IsWaiting || claim.Challenge != Nonce{} ||
                                   (now - question.Heard <= Patience && now - question.AskedAt >= FirstRetry));
             if (isAsked)
@@ -277,6 +278,7 @@ void ClaimExchange::TakeQuestions(Outgoing &claim, TimePoint now)
                 claim.WithCertificate |= question.Of != Standing::Proven;
                 question.AskedAt = now;
                 question.IsWaiting = false;
+                question.Left -= question.Of == Standing::Unknown ? 1 : 0;
             }
         }
     }

@@ -22,14 +22,12 @@ namespace Rabit::Envelope
 //
 // - At the start, claims go out at growing intervals until the first other session is proven.
 // - A session that is heard and has to prove that it is live is asked: a claim with a nonce goes to all. It
-// is
-//   repeated at growing intervals while the session is heard. One claim asks all.
+//   is repeated at growing intervals while the session is heard. One claim asks all.
 // - A claim that asks is answered. Answers wait a little, so one claim answers many. The same nonce of one
 //   session is answered again no sooner than an answer may have been lost.
 // - Recorded claims ask for answers as well. So answers to sessions that are not proven have a growing gap.
 // - The certificate is left out if all sessions that the claim asks or answers have proven themselves: each
-// of
-//   them has answered a claim of this session, and so has the certificate.
+//   of them has answered a claim of this session, and so has the certificate.
 //
 // A session that sends in a former epoch is asked and answered in that epoch.
 //
@@ -53,6 +51,8 @@ public:
     // is repeated.
     static constexpr std::chrono::milliseconds AnswerTakes{15};
     static constexpr std::chrono::milliseconds LongestAnswers{400};
+    // Questions to a session of which nothing was verified, unless it is heard again.
+    static constexpr int MostUnverified = 4;
     // A session that was not heard for this time is not asked, and after Forgotten its intervals begin anew.
     static constexpr std::chrono::seconds Patience{2};
     static constexpr std::chrono::seconds Forgotten{10};
@@ -121,6 +121,7 @@ private:
         TimePoint Heard{};
         TimePoint AskedAt{};
         bool IsWaiting = false;  // the question is due, and has not gone
+        int Left = MostUnverified;
     };
     // GCC 12 takes the settings for uninitialized if an array of Series has them in place.
     static BackoffTimer<TimePoint> QuestionTimer()

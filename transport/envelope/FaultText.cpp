@@ -1,5 +1,7 @@
 #include "envelope/FaultText.h"
 
+#include <cstddef>
+
 #include "guard/RtpsMessage.h"
 
 namespace Rabit::Envelope
@@ -8,13 +10,21 @@ namespace Rabit::Envelope
 namespace
 {
 
+// A program with this vendor only looks who is there, as `rabit doctor` does: it is no program that should
+// have keys.
+bool IsOfNoVendor(std::span<const std::uint8_t> message)
+{
+    constexpr std::size_t vendorAt = 6;
+    return message[vendorAt] == 0 && message[vendorAt + 1] == 0;
+}
+
 // Follows the sender's name or address. Empty if nothing is wrong with the sender.
 std::string WrongWith(OpenFault fault, std::span<const std::uint8_t> datagram, Epoch in, Epoch newest)
 {
     switch (fault)
     {
         case OpenFault::Malformed:
-            return Rtps::HasRtpsHeader(datagram)
+            return Rtps::HasRtpsHeader(datagram) && !IsOfNoVendor(datagram)
                        ? ": a program without keys sends there, and is not heard; give it keys, or end it"
                        : "";
         case OpenFault::UnknownEpoch:
@@ -48,6 +58,13 @@ std::string AddressText(const Rtps::HostAddress &host)
         text += (text.empty() ? "" : ".") + std::to_string(byte);
     }
     return text;
+}
+
+ProblemKind KindOf(OpenFault fault)
+{
+    return fault == OpenFault::Malformed      ? ProblemKind::WithoutKeys
+           : fault == OpenFault::UnknownEpoch ? ProblemKind::UnknownEpoch
+                                              : ProblemKind::Usual;
 }
 
 }  // namespace
@@ -93,7 +110,7 @@ FaultRow RowOf(const Opener::Result &result, std::span<const std::uint8_t> datag
     }
     const bool isNamed = result.Fault == OpenFault::Revoked && result.Sender != nullptr;
     const std::string entry = isNamed ? result.Sender->Certificate().Content.Name : AddressText(from);
-    return {.Entry = entry, .Text = entry + text};
+    return {.Entry = entry, .Text = entry + text, .Kind = KindOf(result.Fault)};
 }
 
 }  // namespace Rabit::Envelope

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/Rtps.h"
+#include "envelope/LastingProblems.h"
 #include "envelope/NodeVoices.h"
 #include "envelope/Opener.h"
 #include "envelope/Sealer.h"
@@ -19,6 +20,7 @@ struct FaultRow
 {
     std::string Entry;  // the sender's name or address
     std::string Text;   // empty if nothing is wrong with the sender
+    ProblemKind Kind = ProblemKind::Usual;
 };
 // `in`: the epoch that the datagram names; `newest`: the newest one here.
 FaultRow RowOf(const Opener::Result &result, std::span<const std::uint8_t> datagram, Epoch in, Epoch newest,

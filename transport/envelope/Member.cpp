@@ -133,6 +133,7 @@ void Member::Use(const Envelope::Bulletin &read, const SecretKey &secret, Bytes 
     _bulletins.insert(hash);
     _bulletin = {.Of = hash, .Content = std::move(content)};
     _version.fetch_add(1, std::memory_order_release);
+    _lasting.End(ProblemKind::UnknownEpoch);
 }
 
 std::vector<SettingsProblem> Member::Problems() const
@@ -268,10 +269,10 @@ bool Member::AddList(const Hash &hash, std::span<const std::uint8_t> bytes)
     return true;
 }
 
-void Member::Note(const std::string &entry, const std::string &text, TimePoint now)
+void Member::Note(const std::string &entry, const std::string &text, TimePoint now, ProblemKind kind)
 {
     const std::lock_guard lock(_mutex);
-    _lasting.Note(entry, text, now);
+    _lasting.Note(entry, text, kind, now);
 }
 
 bool Member::NoteCertain(const std::string &entry, const std::string &text)

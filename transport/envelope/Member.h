@@ -85,7 +85,8 @@ public:
     bool AddList(const Hash &hash, std::span<const std::uint8_t> bytes);
 
     // Something goes wrong with that node or address: a row of Problems if it lasts.
-    void Note(const std::string &entry, const std::string &text, TimePoint now);
+    void Note(const std::string &entry, const std::string &text, TimePoint now,
+              ProblemKind kind = ProblemKind::Usual);
     // A row from now on.
     // Returns true if the entry had no such row.
     bool NoteCertain(const std::string &entry, const std::string &text);

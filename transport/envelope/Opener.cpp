@@ -62,6 +62,12 @@ Opener::Result Opener::Open(std::span<const std::uint8_t> datagram, TimePoint no
     return result;
 }
 
+// The fault of a datagram that is a reason to ask its sender.
+OpenFault Opener::Asking(OpenFault fault, ProcessorBudget &budget, TimePoint now)
+{
+    return budget.Take(now) ? fault : OpenFault::OverBudget;
+}
+
 Opener::Result Opener::OpenAny(std::span<const std::uint8_t> datagram, TimePoint now)
 {
     Outer outer;
@@ -76,13 +82,13 @@ Opener::Result Opener::OpenAny(std::span<const std::uint8_t> datagram, TimePoint
     const EpochSecrets::Use use = _epochs.UseOf(outer.Epoch, now);
     if (use == EpochSecrets::Use::None)
     {
-        return {.Fault = OpenFault::UnknownEpoch};
+        return {.Fault = Asking(OpenFault::UnknownEpoch, _unknown, now)};
     }
     // A session is needed for a bulletin, too. So claims are opened in all epochs; they open nothing else.
     if (use == EpochSecrets::Use::Bulletin && outer.Class != OuterClass::Bulletin &&
         outer.Kind != OuterKind::Claim)
     {
-        return {.Fault = OpenFault::OldEpoch};
+        return {.Fault = Asking(OpenFault::OldEpoch, _unknown, now)};
     }
     if (outer.Kind == OuterKind::Claim)
     {
@@ -91,7 +97,7 @@ Opener::Result Opener::OpenAny(std::span<const std::uint8_t> datagram, TimePoint
     Session *const session = _sessions.Find(outer.Tag);
     if (session == nullptr)
     {
-        return {.Fault = OpenFault::UnknownSession};
+        return {.Fault = Asking(OpenFault::UnknownSession, _unknown, now)};
     }
     return OpenOfSession(datagram, outer, *session, now);
 }
@@ -112,7 +118,7 @@ Opener::Result Opener::OpenOfSession(std::span<const std::uint8_t> datagram, con
     const bool isFresh = session.IsFresh(now);
     if (!isFresh && outer.Class != OuterClass::Bulletin)
     {
-        return refused(OpenFault::NotFresh);
+        return refused(Asking(OpenFault::NotFresh, _silent, now));
     }
     if (outer.Header >= session.Headers().size())
     {
@@ -164,19 +170,20 @@ Opener::Result Opener::OpenClaim(std::span<const std::uint8_t> datagram, const O
             return {.Fault = fault, .Sender = known};
         }
     }
-    else if (TagOf(sender) != outer.Tag)
-    {
-        return {.Fault = OpenFault::Malformed};
-    }
+    // Nothing was hashed until here.
     else if (_sessions.WasTaken(sender, number))
     {
         return {.Fault = OpenFault::TooOld};
     }
-    const auto refused = [known](OpenFault fault) { return Result{.Fault = fault, .Sender = known}; };
-    if (known == nullptr && !_introductions.Take(now))
+    else if (!_introductions.Take(now))
     {
-        return refused(OpenFault::OverBudget);
+        return {.Fault = OpenFault::OverBudget};
     }
+    else if (TagOf(sender) != outer.Tag)
+    {
+        return {.Fault = OpenFault::Malformed};
+    }
+    const auto refused = [known](OpenFault fault) { return Result{.Fault = fault, .Sender = known}; };
     const SecretKey &secret = *_epochs.Secret(outer.Epoch);
     const auto derived = known == nullptr ? GroupKey(secret, outer.Epoch, sender) : std::nullopt;
     const SecretKey *const key = known != nullptr ? known->GroupKeyOf(outer.Epoch, secret)

@@ -37,7 +37,8 @@ enum class OpenFault : std::uint8_t
     NotAuthentic,        // the tag: another key, receiver or content
     BadClaim,            // a claim's plaintext
     UnknownCertificate,  // the claim only names it, and no session has it. Ask for it
-    OverBudget,          // its kind of sender has used up its processor time. Of a claim also before the tag
+    OverBudget,          // its kind of sender has used up its processor time. Of a claim also before the tag,
+                         // and in place of UnknownEpoch, OldEpoch, UnknownSession and NotFresh
     BadSignature,        // of the datagram: another member made it
     BadCertificate,      // not signed by the authority
     ForeignSource,       // INFO_SRC names a sender that the session does not bind, or the message has
@@ -61,6 +62,10 @@ public:
     static constexpr std::chrono::milliseconds AnswersShare{10};
     // For the keys of claims by which unknown sessions introduce themselves: anybody can send these.
     static constexpr std::chrono::milliseconds IntroductionsShare{20};
+    // For what follows from datagrams of unknown sessions and epochs, and of sessions that are not fresh,
+    // once for each of the two. Anybody can send these, too: beyond the share each of them costs a look-up
+    // alone.
+    static constexpr std::chrono::milliseconds ReactionsShare{10};
     // For bad signatures in the names of fresh sessions, once for the newest epoch and once for former ones.
     // Good ones cost nothing.
     static constexpr std::chrono::milliseconds ForgeriesShare{10};
@@ -96,6 +101,7 @@ public:
     std::uint64_t Count(OpenFault fault) const { return _counts[static_cast<std::size_t>(fault)]; }
 
 private:
+    static OpenFault Asking(OpenFault fault, ProcessorBudget &budget, TimePoint now);
     Result OpenAny(std::span<const std::uint8_t> datagram, TimePoint now);
     Result OpenOfSession(std::span<const std::uint8_t> datagram, const Outer &outer, Session &session,
                          TimePoint now);
@@ -120,6 +126,8 @@ private:
     ProcessorBudget _strangers{StrangersShare, ProcessorBudget::Signature};
     ProcessorBudget _answers{AnswersShare, ProcessorBudget::Signature};
     ProcessorBudget _introductions{IntroductionsShare, ProcessorBudget::Derivation};
+    ProcessorBudget _unknown{ReactionsShare, ProcessorBudget::Reaction};
+    ProcessorBudget _silent{ReactionsShare, ProcessorBudget::Reaction};
     ProcessorBudget _forgeries{ForgeriesShare, ProcessorBudget::Signature};
     ProcessorBudget _formerForgeries{ForgeriesShare, ProcessorBudget::Signature};
     std::vector<std::uint8_t> _work;

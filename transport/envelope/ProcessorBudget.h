@@ -14,10 +14,12 @@ namespace Rabit::Envelope
 class ProcessorBudget
 {
 public:
-    // Of verifying one signature, and of deriving one key and trying it, on a small processor of 2020. A
-    // faster one spends less than its budget.
+    // Of verifying one signature, and of naming a session, deriving one key and trying it, on a small
+    // processor of 2020. A faster one spends less than its budget.
     static constexpr std::chrono::microseconds Signature{110};
     static constexpr std::chrono::microseconds Derivation{10};
+    // A datagram leads to a question, or to a row of problems.
+    static constexpr std::chrono::microseconds Reaction{10};
 
     // `share`: processor time for each second. As much may be spent at once. `cost`: of one piece of work.
     ProcessorBudget(std::chrono::microseconds share, std::chrono::microseconds cost)

@@ -21,6 +21,11 @@ ClaimExchange::Standing StandingOf(const Session *session)
                                  : ClaimExchange::Standing::Claimed;
 }
 
+BlobExchange::Source SourceOf(const Outer &outer, const Session &sender)
+{
+    return {.Tag = outer.Tag, .In = outer.Epoch, .Number = sender.Certificate().Content.Number};
+}
+
 // A function of its own, since ThreadSanitizer's list of the vendors' buffers names it
 // (tests/sanitizers/tsan.supp).
 void PutOpened(std::span<const std::uint8_t> message, std::span<std::uint8_t> buffer)
@@ -87,7 +92,7 @@ bool SealedCore::Seal(std::span<const std::uint8_t> message, const std::optional
                       OuterClass contents, std::vector<std::uint8_t> &sealed, TimePoint now)
 {
     // A member that announces another one's place must not keep back what tells whose it is.
-    const bool isForAll = !to || !AnnouncedPlaces(message).empty();
+    const bool isForAll = !to || !ReadAnnouncedPlaces(message).All.empty();
     const SealFault fault = _sealing.Seal(message, isForAll ? std::nullopt : to, contents, sealed);
     if (fault != SealFault::None)
     {
@@ -120,68 +125,34 @@ std::span<std::uint8_t> SealedCore::Open(std::span<std::uint8_t> datagram, const
     }
     if (result.Verdict)
     {
+        Await(outer.Tag, from, now);
         TakeClaim(result, outer, datagram.size(), now);
         return {};
     }
     if (result.Class == OuterClass::Bulletin)
     {
+        Await(outer.Tag, from, now);
         TakeBlobs(result.Message, sender, outer, datagram.size(), now);
         return {};
     }
     Listen(sender, outer.Tag, now);
-    if (!IsReady(sender, {.Tag = outer.Tag, .In = outer.Epoch}, now))
+    const AnnouncedPlaces announced = ReadAnnouncedPlaces(result.Message);
+    if (!announced.Discovery.empty())
     {
+        _found.Put(outer.Tag, announced);
+    }
+    if (!IsReady(sender, SourceOf(outer, sender), now))
+    {
+        Await(outer.Tag, from, now);
         return {};
     }
-    TakePlaces(result.Message, sender, outer.Tag);
+    if (!announced.All.empty())
+    {
+        _sealing.SetPlaces(sender, outer.Tag, announced.All,
+                           [this](SessionTag each) { return _sessions.Find(each) == nullptr; });
+    }
     PutOpened(result.Message, datagram);
     return datagram.first(result.Message.size());
-}
-
-void SealedCore::TakeFault(const Opener::Result &result, std::span<const std::uint8_t> datagram,
-                           const Outer &outer, const Rtps::Place &from, TimePoint now)
-{
-    const auto [entry, text] = RowOf(result, datagram, outer.Epoch, _epochs.Newest(), from.Host);
-    if (!text.empty())
-    {
-        _member->Note(entry, text, now);
-    }
-    switch (result.Fault)
-    {
-        case OpenFault::UnknownEpoch:
-            // The sender hears that this node lacks the newest bulletin.
-            if (outer.Epoch > _epochs.Newest())
-            {
-                Ask(nullptr, outer.Tag, _epochs.Newest(), now);
-            }
-            return;
-        case OpenFault::OldEpoch:
-            if (const Session *known = _sessions.Find(outer.Tag); known == nullptr || !known->IsFresh(now))
-            {
-                Ask(known, outer.Tag, outer.Epoch, now);
-            }
-            return;
-        case OpenFault::UnknownSession:
-        case OpenFault::NotFresh:
-            Ask(result.Sender, outer.Tag, outer.Epoch, now);
-            return;
-        case OpenFault::UnknownCertificate:
-            _blobs.Want(BlobKind::Certificate, result.Wanted, {.Tag = outer.Tag, .In = outer.Epoch}, now);
-            Ask(nullptr, outer.Tag, outer.Epoch, now);
-            return;
-        case OpenFault::OverBudget:
-            _claims.Asked(outer.Tag, StandingOf(nullptr), result.Challenge, outer.Epoch, now);
-            _isNew = true;
-            return;
-        case OpenFault::Revoked:
-            _claims.Refuse(outer.Tag);
-            return;
-        case OpenFault::RefusedClaim:
-            Refused(result);
-            return;
-        default:
-            return;
-    }
 }
 
 void SealedCore::Ask(const Session *session, SessionTag tag, Epoch in, TimePoint now)
@@ -190,26 +161,12 @@ void SealedCore::Ask(const Session *session, SessionTag tag, Epoch in, TimePoint
     _isNew = true;
 }
 
-void SealedCore::Refused(const Opener::Result &result)
-{
-    if (result.Verdict == ClaimVerdict::TooMany || result.Claimant.empty())
-    {
-        return;
-    }
-    const std::string text = result.Claimant + " claims an identity that " + result.Holder + " has proven";
-    // A member can claim again and again.
-    if (_member->NoteCertain(result.Claimant, text))
-    {
-        Log(text);
-    }
-}
-
 void SealedCore::TakeClaim(const Opener::Result &result, const Outer &outer, std::size_t size, TimePoint now)
 {
     _isNew = true;
     const Session &sender = *result.Sender;
     const Certificate &certificate = sender.Certificate().Content;
-    const BlobExchange::Source source{.Tag = outer.Tag, .In = outer.Epoch};
+    const BlobExchange::Source source = SourceOf(outer, sender);
     _blobs.Drop(sender.Sender().Certificate);
     if (!sender.IsFresh(now))
     {
@@ -238,8 +195,7 @@ void SealedCore::TakeBlobs(std::span<const std::uint8_t> bytes, const Session &s
         return;
     }
     _isNew = true;
-    const BlobExchange::Source source{
-        .Tag = outer.Tag, .In = outer.Epoch, .Number = sender.Certificate().Content.Number};
+    const BlobExchange::Source source = SourceOf(outer, sender);
     const bool isFresh = sender.IsFresh(now);
     if (!isFresh)
     {
@@ -280,7 +236,11 @@ void SealedCore::TakeBlobs(std::span<const std::uint8_t> bytes, const Session &s
             {
                 if (each.IsProven() && each.Certificate().Content.Permissions == blob->Of)
                 {
-                    IsReady(each, {.Tag = TagOf(each.Sender()), .In = outer.Epoch}, now);
+                    IsReady(each,
+                            {.Tag = TagOf(each.Sender()),
+                             .In = outer.Epoch,
+                             .Number = each.Certificate().Content.Number},
+                            now);
                 }
             });
     }
@@ -319,15 +279,6 @@ void SealedCore::Listen(const Session &sender, SessionTag tag, TimePoint now)
     if (verdict != NodeVoices::Verdict::One)
     {
         _member->Note(name, TextOf(verdict, name), now);
-    }
-}
-
-void SealedCore::TakePlaces(std::span<const std::uint8_t> message, const Session &sender, SessionTag tag)
-{
-    if (const auto places = AnnouncedPlaces(message); !places.empty())
-    {
-        _sealing.SetPlaces(sender, tag, places,
-                           [this](SessionTag each) { return _sessions.Find(each) == nullptr; });
     }
 }
 
@@ -404,9 +355,9 @@ std::optional<std::vector<std::uint8_t>> SealedCore::TakeOwn(TimePoint now)
 SealedCore::Memory SealedCore::Remembered() const
 {
     const std::lock_guard lock(_mutex);
-    return {
-        .Sessions = _sessions.Size(),
-        .Others = _claims.Size() + _blobs.Wanted() + _blobs.Incomplete() + _peers.Size() + _voices.Size()};
+    return {.Sessions = _sessions.Size(),
+            .Others = _claims.Size() + _blobs.Wanted() + _blobs.Incomplete() + _peers.Size() +
+                      _voices.Size() + _found.Size()};
 }
 
 bool SealedCore::IsOpenTo(const Rtps::GuidPrefix &prefix, TimePoint now) const

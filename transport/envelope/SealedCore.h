@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -11,7 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "common/HeardStrangers.h"
 #include "common/Ledger.h"
+#include "common/RecentMap.h"
 #include "envelope/BlobExchange.h"
 #include "envelope/BoundPeers.h"
 #include "envelope/ByteBudget.h"
@@ -19,6 +22,7 @@
 #include "envelope/Member.h"
 #include "envelope/NodeVoices.h"
 #include "envelope/Opener.h"
+#include "envelope/ProcessorBudget.h"
 #include "envelope/SealingSide.h"
 #include "envelope/SessionTable.h"
 
@@ -40,6 +44,12 @@ public:
     static constexpr std::size_t MostLogs = 32;
     // Bulletins that wait to be learned. Further ones are asked for again.
     static constexpr std::size_t MostArrived = 2;
+    // Sessions whose places for discovery data are known.
+    static constexpr std::size_t MostFound = 1024;
+    // Processor time in each second for rows about datagrams that anybody can send.
+    static constexpr std::chrono::milliseconds RowsShare{10};
+    // From one answer to calls (EpochOfCalls) to the next.
+    static constexpr std::chrono::seconds BetweenAnswersToCalls{1};
 
     // Null if there are no random bytes, or if OpenSSL fails.
     static std::unique_ptr<SealedCore> Make(std::shared_ptr<Member> member, std::vector<RtpsHeader> headers,
@@ -55,6 +65,9 @@ public:
     {
         return _peers.Find(prefix);
     }
+
+    // As that of SealedSession.
+    std::vector<Rtps::Place> Strangers(TimePoint now);
 
     // True if Open has made something due since the last call.
     bool TakeIsNew() { return _isNew.exchange(false); }
@@ -88,10 +101,14 @@ private:
     void FollowEpochs();
     void TakeFault(const Opener::Result &result, std::span<const std::uint8_t> datagram, const Outer &outer,
                    const Rtps::Place &from, TimePoint now);
+    void AnswerCall(TimePoint now);
+    void NoteRow(const Opener::Result &result, std::span<const std::uint8_t> datagram, const Outer &outer,
+                 const Rtps::Place &from, TimePoint now);
     void TakeClaim(const Opener::Result &result, const Outer &outer, std::size_t size, TimePoint now);
     void TakeBlobs(std::span<const std::uint8_t> bytes, const Session &sender, const Outer &outer,
                    std::size_t size, TimePoint now);
-    void TakePlaces(std::span<const std::uint8_t> message, const Session &sender, SessionTag tag);
+    // Something has to be sent to the session, whose datagram came from there.
+    void Await(SessionTag tag, const Rtps::Place &from, TimePoint now);
     void Ask(const Session *session, SessionTag tag, Epoch in, TimePoint now);
     bool IsReady(const Session &session, const BlobExchange::Source &from, TimePoint now);
     void Listen(const Session &sender, SessionTag tag, TimePoint now);
@@ -113,7 +130,12 @@ private:
     BlobExchange _blobs;
     ByteBudget _budget{Rate, Burst};
     NodeVoices _voices;
-    std::vector<std::vector<std::uint8_t>> _arrived;  // bulletins, to be learned without the lock
+    ProcessorBudget _rows{RowsShare, ProcessorBudget::Reaction};
+    TimePoint _callsFrom{};                                    // calls before are not answered
+    RecentMap<SessionTag, AnnouncedPlaces> _found{MostFound};  // of proven sessions
+    Rtps::HeardStrangers _strangers;                           // nodes of which only the host is known
+    Rtps::HeardStrangers _known;                               // nodes that have announced where they are
+    std::vector<std::vector<std::uint8_t>> _arrived;           // bulletins, to be learned without the lock
     std::vector<std::string> _logs;
     std::atomic<bool> _isNew = true;
 

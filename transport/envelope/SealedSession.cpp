@@ -96,6 +96,11 @@ std::span<std::uint8_t> SealedSession::Open(std::span<std::uint8_t> datagram, co
     return message;
 }
 
+std::vector<Rtps::Place> SealedSession::Strangers(TimePoint now) const
+{
+    return IsStarted() ? _core->Strangers(now) : std::vector<Rtps::Place>();
+}
+
 std::optional<std::string> SealedSession::NameOf(const Rtps::GuidPrefix &peer) const
 {
     const auto found = IsStarted() ? _core->PeerOf(peer) : nullptr;

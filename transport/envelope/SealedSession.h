@@ -70,6 +70,10 @@ public:
     // the beginning of `datagram`. Empty: there is nothing for them; also before Start.
     std::span<std::uint8_t> Open(std::span<std::uint8_t> datagram, const Rtps::Place &from, TimePoint now);
 
+    // Where Calls::Send should also send, for nodes that do not hear the group and that the vendor may not
+    // know: the places that they have announced, or, with port 0, hosts of which nothing else is known.
+    std::vector<Rtps::Place> Strangers(TimePoint now) const;
+
     // The name in the certificate of the proven session that speaks by this GUID prefix. Empty: there is none
     // such.
     std::optional<std::string> NameOf(const Rtps::GuidPrefix &peer) const;

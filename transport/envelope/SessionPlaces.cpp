@@ -29,6 +29,28 @@ std::span<const std::uint8_t> PayloadOf(const Rtps::ConstSubmessage &data)
     return body.IsGood() ? body.Rest() : std::span<const std::uint8_t>();
 }
 
+// The IPv4 places at which a participant takes discovery data that are in its announcement, which is sound.
+std::vector<Rtps::Place> DiscoveryPlacesIn(std::span<const std::uint8_t> payload)
+{
+    std::vector<Rtps::Place> places;
+    Rtps::VisitParameters(
+        payload,
+        [&](const Rtps::ListParameter &parameter)
+        {
+            constexpr std::uint32_t udpV4 = 1;  // RTPS 2.3, 9.3.2
+            Rtps::RtpsReader locator(parameter.Value, Rtps::IsLittleEndianList(payload));
+            if (parameter.Id != Rtps::Parameters::MetatrafficUnicastLocator || locator.U32() != udpV4)
+            {
+                return;
+            }
+            Rtps::Place &place = places.emplace_back();
+            place.Port = static_cast<std::uint16_t>(locator.U32());
+            const auto host = parameter.Value.last(place.Host.size());
+            std::copy(host.begin(), host.end(), place.Host.begin());
+        });
+    return places;
+}
+
 }  // namespace
 
 void SessionPlaces::Set(SessionTag session, const Hash &certificate, std::span<const Rtps::Place> places)
@@ -92,27 +114,36 @@ std::optional<SessionTag> SessionPlaces::At(const Rtps::Place &place) const
     return isAlone ? std::optional(last.Session) : std::nullopt;
 }
 
-std::vector<Rtps::Place> AnnouncedPlaces(std::span<const std::uint8_t> message)
+std::optional<Rtps::Place> AnnouncedPlaces::DiscoveryAt(const Rtps::HostAddress &host) const
 {
-    std::vector<Rtps::Place> places;
+    const auto found =
+        std::ranges::find_if(Discovery, [&host](const Rtps::Place &place) { return place.Host == host; });
+    return found == Discovery.end() ? std::nullopt : std::optional(*found);
+}
+
+AnnouncedPlaces ReadAnnouncedPlaces(std::span<const std::uint8_t> message)
+{
+    AnnouncedPlaces places;
     const Rtps::GuidPrefix sender = Rtps::PrefixOf(message.subspan(std::min(Rtps::PrefixAt, message.size())));
-    Rtps::VisitSubmessages(
-        message,
-        [&](const Rtps::ConstSubmessage &part)
-        {
-            if (part.Kind != Rtps::SubmessageKind::Data || Rtps::WriterOf(part) != Rtps::ParticipantWriter ||
-                (part.Flags & Rtps::DataFlag) == 0)
-            {
-                return;
-            }
-            // The check changes what it reads.
-            const auto payload = PayloadOf(part);
-            std::vector<std::uint8_t> copy(payload.begin(), payload.end());
-            if (auto read = Rtps::CheckDiscovery(Rtps::ParticipantWriter, sender, copy, false))
-            {
-                places = std::move(read->Places);
-            }
-        });
+    Rtps::VisitSubmessages(message,
+                           [&](const Rtps::ConstSubmessage &part)
+                           {
+                               if (part.Kind != Rtps::SubmessageKind::Data ||
+                                   Rtps::WriterOf(part) != Rtps::ParticipantWriter ||
+                                   (part.Flags & Rtps::DataFlag) == 0)
+                               {
+                                   return;
+                               }
+                               // The check changes what it reads.
+                               const auto payload = PayloadOf(part);
+                               std::vector<std::uint8_t> copy(payload.begin(), payload.end());
+                               if (auto read = Rtps::CheckDiscovery(Rtps::ParticipantWriter, sender, copy))
+                               {
+                                   places = {.All = std::move(read->Places),
+                                             .Discovery = DiscoveryPlacesIn(payload),
+                                             .HasCard = read->HasCard};
+                               }
+                           });
     return places;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <span>
@@ -40,8 +41,18 @@ private:
     std::unordered_map<SessionTag, std::vector<Rtps::Place>> _sessions;
 };
 
-// The unicast places that the participant announces which sent this RTPS message. Empty if the message holds
-// no sound announcement. Accepts any bytes.
-std::vector<Rtps::Place> AnnouncedPlaces(std::span<const std::uint8_t> message);
+// The unicast places that a participant announces.
+struct AnnouncedPlaces
+{
+    std::vector<Rtps::Place> All;
+    std::vector<Rtps::Place> Discovery;  // those that take discovery data
+    bool HasCard = false;                // the participant exchanges cards (rtps/Meeting.h)
+
+    // The first one for discovery data at that host. Empty: there is none.
+    std::optional<Rtps::Place> DiscoveryAt(const Rtps::HostAddress &host) const;
+};
+// Returns the places that the sender of this RTPS message announces for itself. Empty if the message holds no
+// sound announcement. Accepts any bytes.
+AnnouncedPlaces ReadAnnouncedPlaces(std::span<const std::uint8_t> message);
 
 }  // namespace Rabit::Envelope

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 #include "common/Rtps.h"
 
@@ -26,6 +27,9 @@ using Nonce = std::array<std::uint8_t, 8>;
 using SessionTag = std::uint32_t;
 // Counts the sets of keys of a fleet, from 1. The authority raises it (Bulletin.h).
 using Epoch = std::uint16_t;
+// No fleet gets there. Anybody may send a datagram that names it, to learn whether nodes with keys are there:
+// each answers by a claim that asks nobody (SealedCore).
+constexpr Epoch EpochOfCalls = std::numeric_limits<Epoch>::max();
 // Of a certificate; the authority gives each serial once.
 using Serial = std::uint32_t;
 using RtpsHeader = std::array<std::uint8_t, Rtps::RtpsHeaderSize>;

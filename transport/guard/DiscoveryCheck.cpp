@@ -3,7 +3,6 @@
 #include <rabit/base/Fnv1a.h>
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <optional>
 #include <string>
@@ -14,7 +13,6 @@
 #include "common/RtpsReader.h"
 #include "common/RtpsWriter.h"
 #include "guard/DeliveryCheck.h"
-#include "guard/TokenCheck.h"
 
 namespace Rabit::Rtps
 {
@@ -42,7 +40,6 @@ struct Found
     Fnv1a DigestWithoutLease;
     std::vector<HostAddress> Hosts;
     std::vector<Place> Places;
-    SignedContent Signed;
     bool ListensToGroup = false;
     bool BestEffort = false;
     bool HasCard = false;
@@ -223,30 +220,6 @@ std::size_t FixedSize(std::uint16_t id)
     }
 }
 
-bool IsOneToken(RtpsReader value)
-{
-    return IsToken(value) && value.Left() < 4;
-}
-
-// Returns true if a parameter of DDS Security is sound; sets `wanted` to false for any other parameter.
-bool CheckSecurity(std::uint16_t id, const RtpsReader &value, bool &wanted)
-{
-    constexpr std::size_t InfoSize = 8;
-    switch (id)
-    {
-        case IdentityToken:
-        case PermissionsToken:
-        case IdentityStatusToken:
-            return IsOneToken(value);
-        case EndpointSecurityInfo:
-        case ParticipantSecurityInfo:
-            return value.Left() == InfoSize;
-        default:
-            wanted = false;
-            return true;
-    }
-}
-
 // Returns true if the parameter is sound; sets `wanted` to false if it is not used.
 bool CheckParameter(EntityId writer, const GuidPrefix &sender, std::uint16_t id,
                     std::span<const std::uint8_t> bytes, bool littleEndian, Found &found, bool &wanted)
@@ -361,38 +334,6 @@ void BoundLease(std::span<std::uint8_t> value, bool littleEndian)
     Write(value.first(4), longest, littleEndian);
 }
 
-// True for the addresses at which a participant, or a group, can be reached.
-bool IsAddress(std::uint16_t id)
-{
-    return IsUnicast(id) || id == UnicastLocator || id == MulticastLocator || id == DefaultMulticastLocator ||
-           id == MetatrafficMulticastLocator;
-}
-
-bool IsSigned(std::uint16_t id)
-{
-    return IsAddress(id) || id == LeaseDuration || id == BuiltinEndpointSet || id == ParticipantSecurityInfo;
-}
-
-SignedParameter SignedForm(std::uint16_t id, RtpsReader value)
-{
-    SignedParameter form{static_cast<std::uint8_t>(id >> 8), static_cast<std::uint8_t>(id & 0xff)};
-    std::span<std::uint8_t> rest = std::span(form).subspan(2);
-    // In a locator, two numbers come before the 16 bytes of the address. The others hold numbers alone.
-    constexpr std::size_t AddressSize = 16;
-    const std::size_t bytes = IsAddress(id) ? AddressSize : 0;
-    for (; value.Left() >= bytes + 4 && rest.size() >= bytes + 4; rest = rest.subspan(4))
-    {
-        Write(rest.first(4), value.U32(), false);
-    }
-    const auto address = value.Bytes(std::min(bytes, value.Left()));
-    std::copy(address.begin(), address.end(), rest.begin());
-    if (id == LeaseDuration)
-    {
-        BoundLease(std::span(form).subspan(2, 8), false);
-    }
-    return form;
-}
-
 // A list of parameters is an announcement, or the key of something that ended.
 enum class Content
 {
@@ -407,8 +348,7 @@ bool IsComplete(EntityId writer, const Found &found, Content content)
 }
 
 std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &sender,
-                                            std::span<std::uint8_t> payload, bool secured, Content content,
-                                            Lease lease)
+                                            std::span<std::uint8_t> payload, Content content, Lease lease)
 {
     constexpr std::uint8_t BigEndianList = 2;
     constexpr std::uint8_t LittleEndianList = 3;
@@ -431,7 +371,6 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
         if (!parameter)
         {
             const bool hasCard = writer == ParticipantWriter && found.HasCard;
-            std::sort(found.Signed.begin(), found.Signed.end());
             return IsComplete(writer, found, content)
                        ? std::optional(
                              Announcement{.Subject = found.Subject,
@@ -440,7 +379,6 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
                                           .IsBestEffort = found.BestEffort,
                                           .Hosts = std::move(found.Hosts),
                                           .Places = std::move(found.Places),
-                                          .Signed = std::move(found.Signed),
                                           .ListensToGroup = found.ListensToGroup,
                                           .HasCard = hasCard})
                        : std::nullopt;
@@ -458,22 +396,6 @@ std::optional<Announcement> CheckParameters(EntityId writer, const GuidPrefix &s
         if (wanted && writer != ParticipantWriter)
         {
             found.Digested(id, value);
-        }
-        if (secured && writer == ParticipantWriter && IsSigned(id))
-        {
-            found.Signed.push_back(SignedForm(id, RtpsReader(value, littleEndian)));
-        }
-        if (!wanted && secured)
-        {
-            wanted = true;
-            if (!CheckSecurity(id, RtpsReader(value, littleEndian), wanted))
-            {
-                return std::nullopt;
-            }
-            if (wanted && writer == ParticipantWriter)
-            {
-                found.Digested(id, value);
-            }
         }
         if (!wanted)
         {
@@ -496,38 +418,21 @@ bool IsLivelinessOf(const GuidPrefix &sender, std::span<const std::uint8_t> payl
 }  // namespace
 
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
-                                           std::span<std::uint8_t> payload, bool secured, Lease lease)
+                                           std::span<std::uint8_t> payload, Lease lease)
 {
     if (writer == LivelinessWriter)
     {
         return IsLivelinessOf(sender, payload, Content::Announcement) ? std::optional(Announcement{})
                                                                       : std::nullopt;
     }
-    return CheckParameters(writer, sender, payload, secured, Content::Announcement, lease);
-}
-
-SignedContent SignedContentOf(std::span<const std::uint8_t> handshake)
-{
-    // 9.3.2.5.1: a big-endian list of parameters without an encapsulation.
-    RtpsReader list(BinaryPropertyOf(handshake, "c.pdata"), false);
-    SignedContent found;
-    for (auto parameter = TakeParameter(list); parameter && found.size() < MostParameters;
-         parameter = TakeParameter(list))
-    {
-        if (IsSigned(parameter->Id))
-        {
-            found.push_back(SignedForm(parameter->Id, RtpsReader(parameter->Value, false)));
-        }
-    }
-    std::sort(found.begin(), found.end());
-    return found;
+    return CheckParameters(writer, sender, payload, Content::Announcement, lease);
 }
 
 bool CheckKey(EntityId writer, const GuidPrefix &sender, std::span<std::uint8_t> payload)
 {
     return writer == LivelinessWriter
                ? IsLivelinessOf(sender, payload, Content::Key)
-               : CheckParameters(writer, sender, payload, false, Content::Key, Lease::Bounded).has_value();
+               : CheckParameters(writer, sender, payload, Content::Key, Lease::Bounded).has_value();
 }
 
 EntityId EntityOf(std::span<const std::uint8_t> guid)

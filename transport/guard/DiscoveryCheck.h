@@ -1,7 +1,6 @@
 // Checks the announcements of participants and endpoints before the vendor reads them.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -15,19 +14,12 @@
 namespace Rabit::Rtps
 {
 
-// A parameter of a participant's announcement, in one form for both byte orders: its id and its value,
-// big-endian, filled up with zeros.
-using SignedParameter = std::array<std::uint8_t, 2 + 24>;
-// The parameters in which a participant's announcement and its handshake must agree: all addresses, also of
-// multicast, the lease (at most LongestLease), the builtin endpoints, and the protection. Sorted.
-using SignedContent = std::vector<SignedParameter>;
-
 // Content of a sound announcement.
 struct Announcement
 {
     // The participant, or the endpoint; 0 on the topic of liveliness.
     EntityId Subject = 0;
-    // Participant: hash of its addresses, and of what it says of its security. Endpoint: hash of all
+    // Participant: hash of its addresses, its lease and its builtin endpoints. Endpoint: hash of all
     // parameters that we use.
     std::uint64_t Digest = 0;
     // Participant: its name. Endpoint: its topic. Empty unless there is exactly one, without a zero byte in
@@ -39,8 +31,6 @@ struct Announcement
     std::vector<HostAddress> Hosts{};
     // Participant or endpoint: the same with their ports.
     std::vector<Place> Places{};
-    // Participant, if `secured`.
-    SignedContent Signed{};
     // Participant: it listens to a multicast group for samples (PID_DEFAULT_MULTICAST_LOCATOR).
     bool ListensToGroup = false;
     // Participant: it exchanges cards (rtps/Meeting.h). Its digest then omits the lease, which the reader of
@@ -62,15 +52,9 @@ enum class Lease
 // written by `sender`. The vendor trusts the lengths, counts and identities in it. Bad ones make it read out
 // of bounds, allocate gigabytes, or fail an assertion. So every parameter that the vendor would read must be
 // whole, and everything must concern the sender itself. Unused parameters are blanked: descriptions of types,
-// for instance, which the vendor would parse, and those of DDS Security unless `secured`. Empty if the
-// payload is unsound.
+// for instance, which the vendor would parse, and those of DDS Security. Empty if the payload is unsound.
 std::optional<Announcement> CheckDiscovery(EntityId writer, const GuidPrefix &sender,
-                                           std::span<std::uint8_t> payload, bool secured,
-                                           Lease lease = Lease::Bounded);
-
-// The content that a sound message of a handshake signs (OMG DDS Security 1.1, 9.3.2.5: `c.pdata` holds the
-// sender's announcement). Empty if the message holds none.
-SignedContent SignedContentOf(std::span<const std::uint8_t> handshake);
+                                           std::span<std::uint8_t> payload, Lease lease = Lease::Bounded);
 
 // Checks the payload of a sample that ends something: a key alone. Returns true if it is whole and names the
 // sender itself or one of its endpoints. Fast DDS takes a payload of up to 16 bytes for a key hash, and

@@ -7,9 +7,6 @@
 #include "common/RtpsWriter.h"
 #include "guard/DiscoveryCheck.h"
 #include "guard/KeyedEnd.h"
-#include "guard/PlainCheck.h"
-#include "guard/ProtectionCheck.h"
-#include "guard/TokenCheck.h"
 
 namespace Rabit::Rtps
 {
@@ -28,6 +25,31 @@ std::uint64_t StampOf(const Submessage &submessage)
     RtpsReader body = submessage.Reader();
     const std::uint64_t seconds = body.U32();
     return seconds << 32 | body.U32();
+}
+
+// True if a sample that ends something ends the sender itself, or an endpoint of its own.
+bool EndsItsOwn(const Delivery &delivery, const GuidPrefix &sender)
+{
+    return (delivery.KeyHash.empty() || IsKeyOf(delivery.Writer, sender, delivery.KeyHash)) &&
+           (!delivery.HasKeyPayload || CheckKey(delivery.Writer, sender, delivery.Payload));
+}
+
+// The endpoint or participant that a sound sample ends by a key alone; 0: none.
+EntityId EndedBy(const Delivery &delivery)
+{
+    EntityId subject = delivery.KeyHash.empty() ? 0 : EntityOf(delivery.KeyHash);
+    if (subject == 0 && delivery.HasKeyPayload)
+    {
+        VisitParameters(delivery.Payload,
+                        [&subject](const ListParameter &parameter)
+                        {
+                            if (parameter.Id == Parameters::EndpointGuid && parameter.Value.size() == 16)
+                            {
+                                subject = EntityOf(parameter.Value);
+                            }
+                        });
+    }
+    return subject;
 }
 
 }  // namespace
@@ -74,22 +96,6 @@ std::span<std::uint8_t> RtpsGuard::Filter(Passage &passage)
         {
             passage.Honest = false;
             return {};
-        }
-        if (IsSecured() && IsSecure(submessage->Kind))
-        {
-            const auto size =
-                ProtectedSize(passage.Datagram.subspan(at), at == RtpsHeaderSize,
-                              _mode == Mode::Protected ? Proof::OfSender : Proof::OfMember,
-                              [&](const Submessage &part) { return MayBeInProtected(part, passage); });
-            if (!size)
-            {
-                passage.Honest = false;
-                return {};
-            }
-            // A signature covers it: no byte of it is changed.
-            rest = passage.Datagram.subspan(at + *size);
-            passage.Useful = true;
-            continue;
         }
         if (submessage->Kind == SubmessageKind::Statistics && rest.empty())
         {
@@ -179,31 +185,9 @@ RtpsGuard::Verdict RtpsGuard::Judge(const Submessage &submessage, Passage &passa
             return Verdict::Pass;
         default:
             // Receivers skip unknown kinds (8.3.4.1). INFO_REPLY, which redirects answers, is one of them: no
-            // vendor here sends it.
-            return IsSecure(submessage.Kind) || submessage.Kind == SubmessageKind::Statistics
-                       ? Verdict::Drop
-                       : Verdict::Ignore;
+            // vendor here sends it. Those of DDS Security are, too.
+            return submessage.Kind == SubmessageKind::Statistics ? Verdict::Drop : Verdict::Ignore;
     }
-}
-
-bool RtpsGuard::MayBeInProtected(const Submessage &submessage, const Passage &passage) const
-{
-    if (submessage.Kind == SubmessageKind::InfoSource)
-    {
-        auto header = passage.Header;
-        return PutSource(submessage, header) && SenderOf(header) == passage.Sender;
-    }
-    if (_mode != Mode::Protected)
-    {
-        return true;
-    }
-    if (IsDelivery(submessage.Kind))
-    {
-        const auto delivery = CheckDelivery(submessage);
-        return delivery && (IsHeardInPlain(submessage, *delivery) || IsOfTypes(delivery->Writer)) &&
-               IsSoundUnchanged(submessage, *delivery, passage.Sender);
-    }
-    return submessage.Kind != SubmessageKind::SecureBody;
 }
 
 bool RtpsGuard::IsForOthers(const Passage &passage) const
@@ -229,18 +213,9 @@ RtpsGuard::Verdict RtpsGuard::JudgeDelivery(const Submessage &submessage, const 
         }
     }
     auto verdict = Verdict::Pass;
-    const bool isHandshake = IsSecured() && delivery.Writer == HandshakeWriter;
-    if (_mode == Mode::Protected && !IsHeardInPlain(submessage, delivery))
+    if (IsBuiltin(delivery.Writer) && !IsKnownBuiltin(delivery.Writer))
     {
-        verdict = IsOfTypes(delivery.Writer) ? Verdict::Ignore : Verdict::Refuse;
-    }
-    else if (isHandshake && submessage.Kind == SubmessageKind::HeartbeatFrag)
-    {
-        verdict = Verdict::Ignore;  // fragments are assembled here
-    }
-    else if (IsBuiltin(delivery.Writer) && !IsKnownBuiltin(delivery.Writer) && !isHandshake)
-    {
-        verdict = IsSecured() ? Verdict::Pass : Verdict::Ignore;
+        verdict = Verdict::Ignore;
     }
     else if (_mode == Mode::Full && IsBuiltin(delivery.Writer) && !IsItsOwn(submessage, delivery, passage))
     {
@@ -280,34 +255,16 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
         }
         return Verdict::Ignore;
     }
-    if (delivery.Writer == HandshakeWriter)
-    {
-        if (!delivery.Alive || !IsGenericMessage(delivery.Payload))
-        {
-            return Verdict::Drop;
-        }
-        return _authentication == nullptr ||
-                       _authentication->Signs(passage.Sender, SignedContentOf(delivery.Payload))
-                   ? Verdict::Pass
-                   : Verdict::Refuse;
-    }
     if (!EndsItsOwn(delivery, passage.Sender))
     {
         return Verdict::Drop;
     }
-    const bool isKeyAlone = delivery.HasKeyPayload || delivery.Payload.empty();
-    // Nobody signs goodbyes.
-    if (IsSecured() && delivery.Writer == ParticipantWriter && (isKeyAlone || !delivery.Alive) &&
-        !_peers.SpeaksFrom(passage.Sender, passage.From))
-    {
-        return Verdict::Refuse;
-    }
-    if (isKeyAlone)
+    if (delivery.HasKeyPayload || delivery.Payload.empty())
     {
         NoteEnd(delivery, EndedBy(delivery), passage);
         return Verdict::Pass;
     }
-    const auto announcement = CheckDiscovery(delivery.Writer, passage.Sender, delivery.Payload, IsSecured(),
+    const auto announcement = CheckDiscovery(delivery.Writer, passage.Sender, delivery.Payload,
                                              passage.Whence == Origin::Card ? Lease::OfCard : Lease::Bounded);
     if (!announcement)
     {
@@ -320,7 +277,7 @@ RtpsGuard::Verdict RtpsGuard::JudgeBuiltinSample(const Submessage &submessage, c
     }
     if (delivery.Writer == ParticipantWriter)
     {
-        return JudgeParticipant(*announcement, delivery.First, passage);
+        return JudgeParticipant(*announcement, passage);
     }
     const bool isEndpoint = delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter;
     return _mode == Mode::Full && isEndpoint && _peers.Hears(passage.Sender, passage.Now)
@@ -352,16 +309,23 @@ void RtpsGuard::NoteVoice(const Submessage &submessage, const Delivery &delivery
 {
     if (!IsBuiltin(delivery.Writer))
     {
-        if (_peers.SpeaksFrom(passage.Sender, passage.From) && _ledger->Spoke(passage.Sender) &&
-            _observer != nullptr)
+        if (_peers.SpeaksFrom(passage.Sender, passage.From))
         {
-            _observer->Spoke(passage.Sender);
+            NoteSpoken(passage.Sender);
         }
     }
     else if (submessage.Kind == SubmessageKind::AckNack && delivery.First > 1 &&
              (delivery.Writer == PublicationsWriter || delivery.Writer == SubscriptionsWriter))
     {
         _ledger->Listens(passage.Sender);
+    }
+}
+
+void RtpsGuard::NoteSpoken(const GuidPrefix &peer)
+{
+    if (_ledger->Spoke(peer) && _observer != nullptr)
+    {
+        _observer->Spoke(peer);
     }
 }
 
@@ -396,14 +360,9 @@ void RtpsGuard::NoteGoodbye(const Passage &passage)
     {
         _observer->Gone(passage.Sender);
     }
-    if (_authentication != nullptr)
-    {
-        _authentication->SaidGoodbye(passage.Sender);
-    }
 }
 
-RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement, std::int64_t number,
-                                               const Passage &passage)
+RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement, const Passage &passage)
 {
     if (_goodbyes->Has(passage.Sender, passage.Now))
     {
@@ -443,12 +402,8 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
     {
         return Verdict::Refuse;
     }
-    // In the other modes participants are only counted: addresses come another way, or are proven later.
-    if (!_peers.Announced(passage.Sender, _mode == Mode::Full ? announcement.Digest : 0, passage.Now) ||
-        (_authentication != nullptr && isFromNetwork &&
-         !_authentication->Announced(
-             passage.Sender,
-             {.Digest = announcement.Digest, .Signed = announcement.Signed, .Number = number})))
+    // In the other mode participants are only counted: addresses come another way.
+    if (!_peers.Announced(passage.Sender, _mode == Mode::Full ? announcement.Digest : 0, passage.Now))
     {
         if (coming == Ledger::Coming::New)
         {
@@ -457,7 +412,11 @@ RtpsGuard::Verdict RtpsGuard::JudgeParticipant(const Announcement &announcement,
         return Verdict::Refuse;
     }
     _ledger->SetPlaces(passage.Sender, announcement.Places);
-    // With keys the handshake confirms these addresses.
+    // Its certificate was proven. One that only reads would never speak.
+    if (_authority)
+    {
+        NoteSpoken(passage.Sender);
+    }
     _peers.IsAt(passage.Sender, announcement.Hosts, passage.From);
     if (_mode == Mode::Full)
     {

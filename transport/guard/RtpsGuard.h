@@ -22,7 +22,6 @@
 #include "common/Ledger.h"
 #include "common/RecentGoodbyes.h"
 #include "guard/AnnouncementReplies.h"
-#include "guard/AuthenticationThread.h"
 #include "guard/AuthorityCheck.h"
 #include "guard/DeliveryCheck.h"
 #include "guard/DiscoveryFragments.h"
@@ -39,7 +38,8 @@ struct Announcement;
 
 // Admits only data that is sound in itself (RtpsMessage, DeliveryCheck, DiscoveryCheck) and agrees with what
 // its sender has sent before (KnownPeers, SentFragments). A careful forger of a neighbour's datagrams can
-// still harm its streams, though not the process: only DDS Security prevents that. Thread-safe.
+// still harm its streams, though not the process: only the seal (envelope/SealedSession.h) prevents that.
+// Thread-safe.
 class RtpsGuard
 {
 public:
@@ -47,12 +47,7 @@ public:
     {
         Full,
         // Checks each datagram by itself only: peers' announcements may come another way, by shared memory.
-        StructureOnly,
-        // Like StructureOnly; sound submessages of DDS Security pass unchanged.
-        Secured,
-        // Like Secured, for a domain where only participant announcements and handshakes are unprotected, and
-        // each receiver can tell which participant has protected a datagram (origin authentication).
-        Protected
+        StructureOnly
     };
 
     using TimePoint = KnownPeers::TimePoint;
@@ -87,9 +82,6 @@ public:
     // an observer, announcements of participants that have a card are not delivered: the observer sees to it
     // that the vendor learns of them.
     void SetObserver(PeerObserver &observer) { _observer = &observer; }
-    // Sets what is told of announcements and handshakes, and decides with which of them the vendor begins an
-    // authentication. For Mode::Protected; as for SetObserver.
-    void SetAuthentication(AuthenticationThread &authentication) { _authentication = &authentication; }
     // Sets what the certificates of participants say. An announcement that they do not allow is then refused,
     // whether it comes from the network or in a card. A participant without a known certificate is ignored.
     // For Mode::Full; as for SetObserver.
@@ -122,14 +114,12 @@ public:
     // Records a datagram that we send.
     void Sending(std::span<const std::uint8_t> datagram);
     // True if a datagram may go to that address, which is not a group's (Ledger::MayGo). To a stranger it
-    // does not go while the kernel awaits the hardware address, but for one a second. With an authority
-    // samples go to all places: members alone are announced, and one that only reads has not spoken.
+    // does not go while the kernel awaits the hardware address, but for one a second.
     bool MayGo(const Place &to, std::size_t bytes, Ledger::Cargo cargo, HardwareAddresses &addresses,
                TimePoint now)
     {
-        const bool isToMember = _authority && cargo == Ledger::Cargo::Samples;
-        const auto going = _mode == Mode::Full && !isToMember ? _ledger->MayGo(to, bytes, cargo, now)
-                                                              : Ledger::Going::Freely;
+        const auto going =
+            _mode == Mode::Full ? _ledger->MayGo(to, bytes, cargo, now) : Ledger::Going::Freely;
         return going == Ledger::Going::Freely ||
                (going == Ledger::Going::AsToStranger && addresses.MayAsk(to.Host, now));
     }
@@ -169,22 +159,21 @@ private:
         std::vector<std::vector<std::uint8_t>> Whole;
     };
 
-    bool IsSecured() const { return _mode == Mode::Secured || _mode == Mode::Protected; }
     // Returns the remaining datagram; empty if nothing remains.
     std::span<std::uint8_t> Filter(Passage &passage);
     Verdict Judge(const Submessage &submessage, Passage &passage);
-    // True if a message that its sender has protected as a whole may contain the submessage unprotected.
-    bool MayBeInProtected(const Submessage &submessage, const Passage &passage) const;
     bool IsForOthers(const Passage &passage) const;
     // True if the observer handles this instead of the network.
     bool IsReplayed(const Delivery &delivery, const Passage &passage) const;
     // True if the ledger counts what comes from the sender.
     bool IsCounted(const Passage &passage) const { return _mode == Mode::Full && passage.Sender != _own; }
     void NoteVoice(const Submessage &submessage, const Delivery &delivery, const Passage &passage);
+    // The participant is no stranger any more.
+    void NoteSpoken(const GuidPrefix &peer);
     Verdict JudgeEndpoint(const Announcement &announcement, EntityId writer, const Passage &passage);
     void NoteEnd(const Delivery &delivery, EntityId subject, const Passage &passage);
     void NoteGoodbye(const Passage &passage);
-    Verdict JudgeParticipant(const Announcement &announcement, std::int64_t number, const Passage &passage);
+    Verdict JudgeParticipant(const Announcement &announcement, const Passage &passage);
     Verdict JudgeDelivery(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     Verdict JudgeBuiltinSample(const Submessage &submessage, const Delivery &delivery, Passage &passage);
     // True if the discovery data comes from the participant in whose name it is, as far as an address tells.
@@ -203,7 +192,6 @@ private:
     const std::shared_ptr<RecentGoodbyes> _goodbyes;
     const std::shared_ptr<Ledger> _ledger;
     PeerObserver *_observer = nullptr;
-    AuthenticationThread *_authentication = nullptr;
     std::optional<AuthorityCheck> _authority;
     std::mutex _mutex;              // several sockets receive at once
     KnownPeers _peers;              // guarded by _mutex

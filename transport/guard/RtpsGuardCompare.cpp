@@ -157,7 +157,7 @@ RtpsGuard::Verdict RtpsGuard::CutAbsent(const Submessage &submessage, const Deli
     constexpr std::size_t BaseAt = 16;
     constexpr std::size_t BitsAt = 24;
     const auto at = [&](std::size_t position) { return submessage.Body().subspan(position); };
-    // Without an announcement (shared memory, keys) it is not known where the vendor is.
+    // Without an announcement (shared memory) it is not known where the vendor is.
     AbsentNumbers unknown;
     AbsentNumbers *absent = _peers.Absent(passage.Sender, delivery.Writer);
     if (absent == nullptr)

@@ -104,6 +104,10 @@ void MakeGap(const Submessage &data)
     const std::int64_t number = body.Sequence();
     std::array<std::uint8_t, gapSize> gap{};
     const auto rest = std::copy(entities.begin(), entities.end(), gap.begin());
+    // The announcement may name no reader, and Cyclone DDS heeds a GAP only if it names one.
+    constexpr std::uint8_t builtinReader = 0xc7;  // 9.3.1.3; of the same key as the writer
+    std::copy_n(gap.begin() + sizeof(EntityId), sizeof(EntityId) - 1, gap.begin());
+    gap[sizeof(EntityId) - 1] = builtinReader;
     const auto numbers = std::span(gap).subspan(static_cast<std::size_t>(rest - gap.begin()));
     WriteSequence(numbers, number, data.LittleEndian);
     WriteSequence(numbers.subspan(SequenceSize), number + 1, data.LittleEndian);

@@ -42,8 +42,8 @@ bool EndsLikeStatistics(std::span<const std::uint8_t> datagram);
 
 // Turns a submessage into padding, which no parser looks into.
 void Blank(const Submessage &submessage);
-// Turns a DATA into a GAP that declares its number absent, and padding. It must have room for both (36
-// bytes).
+// Turns a DATA of a builtin writer of endpoints into a GAP that declares its number absent to the builtin
+// reader, and padding. It must have room for both (36 bytes).
 void MakeGap(const Submessage &data);
 
 }  // namespace Rabit::Rtps

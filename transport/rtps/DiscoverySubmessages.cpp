@@ -239,37 +239,4 @@ void AppendEnd(std::vector<std::uint8_t> &message, EntityId writer, const GuidPr
     AppendParameter(message, Parameters::Sentinel, {});
 }
 
-std::vector<std::uint8_t> GoodbyeAfter(std::span<const std::uint8_t> announcement, const GuidPrefix &to)
-{
-    std::vector<std::uint8_t> message;
-    VisitSubmessages(announcement,
-                     [&](const ConstSubmessage &part)
-                     {
-                         RtpsReader body = part.Reader();
-                         body.Skip(WriterInData);
-                         if (part.Kind != SubmessageKind::Data || body.Entity() != ParticipantWriter)
-                         {
-                             return;
-                         }
-                         const std::int64_t number = body.Sequence();
-                         const auto header = announcement.first(RtpsHeaderSize);
-                         message.assign(header.begin(), header.end());
-                         AppendDestination(message, to);
-                         AppendEnd(message, ParticipantWriter, SenderOf(announcement), ParticipantEntity,
-                                   number + 1);
-                     });
-    return message;
-}
-
-std::vector<std::uint8_t> GoodbyeOf(const GuidPrefix &peer, std::span<const std::uint8_t> message,
-                                    std::int64_t number)
-{
-    const auto header = message.first(std::min(RtpsHeaderSize, message.size()));
-    std::vector<std::uint8_t> goodbye(header.begin(), header.end());
-    goodbye.resize(RtpsHeaderSize);
-    std::copy(peer.begin(), peer.end(), goodbye.begin() + PrefixAt);
-    AppendEnd(goodbye, ParticipantWriter, peer, ParticipantEntity, number);
-    return goodbye;
-}
-
 }  // namespace Rabit::Rtps

@@ -54,12 +54,6 @@ void AppendGap(std::vector<std::uint8_t> &message, EntityId writer, std::int64_t
 // Acknowledges all before `base` and requests the `missing`, which are at most 256 numbers from there.
 void AppendAcknowledgement(std::vector<std::uint8_t> &message, EntityId writer, std::int64_t base,
                            std::span<const std::int64_t> missing, std::uint32_t count);
-// The goodbye to one participant that follows an announcement of our own, as a message. Empty if the
-// announcement is none.
-std::vector<std::uint8_t> GoodbyeAfter(std::span<const std::uint8_t> announcement, const GuidPrefix &to);
-// The goodbye of another participant, with the header of any message.
-std::vector<std::uint8_t> GoodbyeOf(const GuidPrefix &peer, std::span<const std::uint8_t> message,
-                                    std::int64_t number);
 // Appends that an entity of the participant whose header the message has is gone: the participant itself,
 // with ParticipantWriter and ParticipantEntity, or an endpoint, with the writer that announces it.
 void AppendEnd(std::vector<std::uint8_t> &message, EntityId writer, const GuidPrefix &participant,

@@ -11,15 +11,20 @@
 namespace Rabit::Rtps
 {
 
+void Meeting::SetSelf(const GuidPrefix &self)
+{
+    _self = self;
+    _exchange.SetSelf(self);
+    _replay.SetSelf(self);
+}
+
 bool Meeting::Sending(std::span<const std::uint8_t> datagram, TimePoint now)
 {
     if (!HasRtpsHeader(datagram))
     {
         return false;
     }
-    _self = SenderOf(datagram);
-    _exchange.SetSelf(_self);
-    _replay.SetSelf(_self);
+    SetSelf(SenderOf(datagram));
     if (AnnouncingOf(datagram).Alone)
     {
         _own.Announced(datagram);

@@ -64,6 +64,9 @@ public:
     {
     }
 
+    // The own participant. Without multicast it asks others for their cards before it sends anything itself.
+    void SetSelf(const GuidPrefix &self);
+    bool IsSelf(const GuidPrefix &participant) const { return participant == _self; }
     // The own implementation is about to send this datagram, which has no samples. Returns true if it should
     // not be sent: all its addressees have cards.
     bool Sending(std::span<const std::uint8_t> datagram, TimePoint now);

@@ -38,6 +38,17 @@ auto MeetingThread::With(const Task &task)
     return task(Clock::now());
 }
 
+void MeetingThread::SetSelf(const GuidPrefix &self)
+{
+    With([&](auto) { _meeting.SetSelf(self); });
+}
+
+bool MeetingThread::IsSelf(const GuidPrefix &participant) const
+{
+    const std::lock_guard lock(_mutex);
+    return _meeting.IsSelf(participant);
+}
+
 bool MeetingThread::Sending(std::span<const std::uint8_t> datagram)
 {
     return With([&](auto now) { return _meeting.Sending(datagram, now); });

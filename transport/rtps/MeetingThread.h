@@ -44,6 +44,8 @@ public:
     void Stop();
 
     // Forwarded to Meeting. Any thread; no call is made inside.
+    void SetSelf(const GuidPrefix &self);
+    bool IsSelf(const GuidPrefix &participant) const;
     bool Sending(std::span<const std::uint8_t> datagram);
     bool Received(std::span<const std::uint8_t> datagram, const HostAddress &from, bool isKnownAt);
     // The implementation has lost the participant.

@@ -3,7 +3,7 @@
 import json
 import signal
 
-from rabit_lab import flight as flights
+from rabit_lab import flight as flights, keys
 
 LOOK_S = 0.3  # between two looks whether a node has told its domain
 SORTS = {"cut": "hearing", "deaf": "hearing"}  # faults that change the same
@@ -177,7 +177,7 @@ class Faults:
                 sent.reason = answer["reason"] or sent.reason
             except (ValueError, KeyError, TypeError, IndexError):
                 sent.reason = text
-        self._senders[id(event)] = (self._nodes.start_tool(values["from"], argv, line), began)
+        self._senders[id(event)] = (self._nodes.start_tool(values["from"], argv, line, keys.sender(self._scenario, event)), began)
 
     def _send(self, event, _):
         process, began = self._senders[id(event)]

@@ -7,7 +7,7 @@ import secrets
 import shutil
 import sys
 
-from rabit_lab import cage, containers, network, new, real_time, runner, scenario as scenarios, table, tools, what_if
+from rabit_lab import cage, containers, keys, network, new, real_time, runner, scenario as scenarios, table, tools, what_if
 from rabit_lab.marked import ScenarioError
 from rabit_lab.radio import Unsupported
 
@@ -43,7 +43,8 @@ def run(options):
     label = f"rabit-lab-{secrets.token_hex(4)}" if has_images else None
     code = IMPOSSIBLE
     try:
-        code = cage.run(lambda: fly(scenario, folder, found, label), own_processes=not has_images)
+        made = keys.make(scenario, folder, found.rabit)
+        code = cage.run(lambda: fly(scenario, folder, found, label, made), own_processes=not has_images)
     finally:
         if label and shutil.which("docker"):
             containers.remove(label)
@@ -52,11 +53,11 @@ def run(options):
     return code
 
 
-def fly(scenario, folder, found, label):
-    """In the cage. `label`: of the containers, if nodes have images. Returns the exit code."""
+def fly(scenario, folder, found, label, made):
+    """In the cage. `label`: of the containers, if nodes have images. `made`: the keys. Returns the exit code."""
     readable = {str(scenario.folder), str(pathlib.Path(found.stepped_clock).parent)}
     spaces = containers.Containers(scenario, folder, readable, label) if label else network.Spaces()
-    verdicts = runner.Runner(scenario, folder, found, spaces).run()
+    verdicts = runner.Runner(scenario, folder, found, spaces, made).run()
     if verdicts is None:
         print(f"interrupted; {folder}/report.html has what was seen")
         return INTERRUPTED

@@ -25,7 +25,7 @@ expect:
 
 
 def configurations(folder):
-    """[(file, name of the node, what it publishes, [(message, from)] that it subscribes to)]"""
+    """[(file, name of the node, if it has keys, what it publishes, [(message, from)] that it subscribes to)]"""
     found = []
     for path in sorted(folder.glob("*.yaml")):
         try:
@@ -36,7 +36,7 @@ def configurations(folder):
             continue
         rules = {key: [rule for rule in content.get(key) or [] if isinstance(rule, dict) and "message" in rule]
                  for key in ("publish", "subscribe")}
-        found.append((path, content["node"], [rule["message"] for rule in rules["publish"]],
+        found.append((path, content["node"], "security" in content, [rule["message"] for rule in rules["publish"]],
                       [(rule["message"], rule.get("from") or ["*"]) for rule in rules["subscribe"]]))
     return found
 
@@ -61,12 +61,13 @@ def write(folder, to):
     target = pathlib.Path(to) if to else folder / "scenario.yaml"
     if target.exists():
         raise ScenarioError(target, "is there already; name another file with --to")
-    nodes = "\n".join(f"  {node}: {{command: [{program_for(folder, path)}, --config, {path.name}]}}" for path, node, *_ in found)
+    nodes = "\n".join(f"  {node}: {{command: [{program_for(folder, path)}, --config, {path.name}]"
+                      f"{f', keys: {path.name}' if keyed else ''}}}" for path, node, keyed, *_ in found)
     names = [node for _, node, *_ in found]
     streams = ""
-    for _, origin, published, _ in found:
+    for *_, origin, _, published, _ in found:
         for message in published:
-            for _, node, _, subscribed in found:
+            for _, node, _, _, subscribed in found:
                 if node != origin and any(message == wanted for wanted, _ in subscribed):
                     streams += f"  - {origin}/{message} at {node}: age p90 < 2s, before 20s\n"
     target.write_text(SCENARIO.format(file=target.name, nodes=nodes, victim=names[-1], streams=streams), encoding="utf-8")

@@ -16,11 +16,12 @@ LAST_LINES = 20
 
 
 class Nodes:
-    """Starts and ends the nodes, in their namespaces. `now` is the lab's clock."""
+    """Starts and ends the nodes, in their namespaces. `now` is the lab's clock, `keys` what keys.make returns."""
 
-    def __init__(self, scenario, nets, flight, folder, tools, now):
+    def __init__(self, scenario, nets, flight, folder, tools, now, keys=None):
         self._scenario, self._nets, self._flight = scenario, nets, flight
         self._folder, self._tools, self.now = pathlib.Path(folder), tools, now
+        self._keys = keys or {}  # name -> folder
         self._running = {}  # node -> (life index, Process)
         self._steps = {}  # node -> seconds
         self._logs = {}
@@ -75,7 +76,7 @@ class Nodes:
             for folder in (records, self.disk(name)):
                 folder.chmod(0o777)
         env = {"RABIT_NODE_RECORD": str(records), "RABIT_NODE_INTERFACE": ",".join(self._nets.addresses(place)),
-               "RABIT_LAB_DISK": str(self.disk(name)), **node.env}
+               "RABIT_LAB_DISK": str(self.disk(name)), **self._keys_of(name, "RABIT_NODE_KEYS"), **node.env}
         if name in self._stepped:
             self._write_clock(name)
             env.update({"LD_PRELOAD": self._tools.stepped_clock, "STEPPED_CLOCK": str(self._clock(name))})
@@ -91,6 +92,9 @@ class Nodes:
             for other in self._scenario.nodes.values():
                 if other.beside == name and not self._flight.lives_of(other.name):
                     self.start(other.name)
+
+    def _keys_of(self, name, variable):
+        return {variable: str(self._keys[name])} if name in self._keys else {}
 
     def records(self, name, number):
         return self._folder / "records" / name / str(number)
@@ -169,13 +173,13 @@ class Nodes:
                 code = None
             self._ended(name, by, code)
 
-    def start_tool(self, host, argv, on_line):
-        """The program `rabit`, in the place of a node."""
-        environment = {"RABIT_INTERFACE": ",".join(self._nets.addresses(host))}
+    def start_tool(self, host, argv, on_line, name):
+        """The program `rabit`, in the place of a node. `name`: that of its keys, if there are any."""
+        environment = {"RABIT_INTERFACE": ",".join(self._nets.addresses(host)), **self._keys_of(name, "RABIT_KEYS")}
         return processes.Process(self._nets.spaces.inside(host, [self._tools.rabit, *argv]), environment, on_line=on_line,
                                  start_new_session=True)
 
     def start_observer(self, domain):
         """Records all messages as one observer on the air hears them."""
         return self.start_tool(networks.OBSERVER, ["record", "--to", str(self._folder / "observer"), "--domain", str(domain)],
-                               lambda text: None)
+                               lambda text: None, networks.OBSERVER)

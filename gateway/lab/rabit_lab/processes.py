@@ -65,6 +65,14 @@ def full_pipe():
     return reading, writing
 
 
+# Folders of keys that the lab's user has in use: its nodes and tools get their own.
+KEYS_OF_THE_USER = {"RABIT_KEYS", "RABIT_NODE_KEYS"}
+
+
+def environment_of_children():
+    return {name: value for name, value in os.environ.items() if name not in KEYS_OF_THE_USER}
+
+
 class Process:
     """A child process and the lines that it has written so far. With `unread`, its output is a pipe that is full and that
     nobody reads. `on_line(text)` is called with each line, on a thread of the process, which then keeps none."""
@@ -77,7 +85,7 @@ class Process:
         self._full_pipe = full_pipe() if unread else None
         output = self._full_pipe[1] if unread else subprocess.PIPE
         self._popen = subprocess.Popen(self.argv, stdin=subprocess.PIPE, stdout=output, stderr=subprocess.STDOUT, text=True,
-                                       bufsize=1, errors="replace", env={**os.environ, **(env or {})},
+                                       bufsize=1, errors="replace", env={**environment_of_children(), **(env or {})},
                                        preexec_fn=die_with_parent, **how)
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()

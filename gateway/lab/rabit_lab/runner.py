@@ -21,11 +21,12 @@ SETTLE_S = 1.0  # a node that ends in this time has not started
 class Runner:
     """One run. It must be in a cage, which cleans up."""
 
-    def __init__(self, scenario, folder, tools, spaces=None):
+    def __init__(self, scenario, folder, tools, spaces=None, keys=None):
         self.scenario, self.folder, self.tools = scenario, pathlib.Path(folder), tools
         self.flight = flights.Flight(scenario)
         self._began = None
         self._spaces = spaces or network.Spaces()
+        self._keys = keys
         self._interrupted = threading.Event()
         self._table = table.Table(scenario, self.flight)
         self._observer = None
@@ -45,7 +46,7 @@ class Runner:
             signal.signal(number, lambda *_: self._interrupted.set())
         shutil.copy(self.scenario.path, self.folder / "scenario.yaml")
         nets = network.Networks(self.scenario, self.tools.radio, self.folder, self._spaces)
-        self._nodes = nodes.Nodes(self.scenario, nets, self.flight, self.folder, self.tools, self.now)
+        self._nodes = nodes.Nodes(self.scenario, nets, self.flight, self.folder, self.tools, self.now, self._keys)
         self._places = {name: places.Places(one, self.scenario.folder)
                         for name, one in self.scenario.networks.items() if one.range}
         self._nets = nets

@@ -27,6 +27,7 @@ class Node:
     plain: bool  # no Rabit node: others do not see it, and it records nothing
     line: int
     beside: str = ""  # the node in whose network it runs, as its autopilot does
+    keys: str = ""  # the file of its configuration, to which its keys are made; empty: it has none
 
 
 @dataclasses.dataclass
@@ -128,7 +129,7 @@ class Scenario:
 
     def share_network(self, one, other):
         """True if they can hear each other on some network, as the scenario has it."""
-        if self.nodes[one].plain or self.nodes[other].plain:
+        if self.nodes[one].plain or self.nodes[other].plain or bool(self.nodes[one].keys) != bool(self.nodes[other].keys):
             return False
         return any(one in network.members and other in network.members
                    and not any(one in pair and other in pair for pair in network.hidden)
@@ -235,7 +236,7 @@ class Reader:
         for key, value in section.items():
             line = section.line_of(key)
             value = self.map(value, line, f"node {key}")
-            self.keys(value, ("count", "command", "image", "env", "start", "plain", "autopilot"), f"node {key}")
+            self.keys(value, ("count", "command", "image", "env", "start", "plain", "keys", "autopilot"), f"node {key}")
             count = self.get(value, "count", units.number, None)
             if ("*" in key) != (count is not None):
                 self.fail(line, f"node {key}: `*` in the name and `count` go together: uav*: {{count: 4, ...}}")
@@ -271,8 +272,21 @@ class Reader:
             words[0] = found
         env = self.map(value.get("env", marked.Map()), value.line_of("env"), "env")
         start = None if value.get("start") == "never" else self.get(value, "start", units.length, 0.0)
-        return Node(name, words, image, {key: str(env[key]).replace("{node}", name) for key in env}, start,
-                    self.flag(value, "plain"), line)
+        plain = self.flag(value, "plain")
+        return Node(name, words, image, {key: str(env[key]).replace("{node}", name) for key in env}, start, plain, line,
+                    keys=self._read_keys(name, value, image, plain))
+
+    def _read_keys(self, name, value, image, plain):
+        file = self.text(value, "keys")
+        if file is None:
+            return ""
+        at = value.line_of("keys")
+        if image or plain:
+            self.fail(at, f"keys: node {name} " + ("has an image; give it keys in the image" if image else "is no Rabit node"))
+        path = self.folder / file.replace("{node}", name)
+        if not path.is_file():
+            self.fail(at, f"keys: there is no file {path}; it is the configuration of node {name}")
+        return str(path)
 
     def _read_autopilot(self, node, value):
         """Adds its programs, which run beside the node from its first start to the end of the run."""

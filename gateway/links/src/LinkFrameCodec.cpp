@@ -1,7 +1,8 @@
 #include <rabit/gateway/links/LinkFrameCodec.h>
 
 #include "OutcomeRuns.h"
-#include "WireBytes.h"
+
+#include <rabit/base/WireBytes.h>
 
 #include <algorithm>
 

@@ -28,11 +28,7 @@ void Override(GatewayConfig &config, const NodeOptions &options)
     }
     if (!options.Keys.empty())
     {
-        if (!config.Security)
-        {
-            config.Security.emplace();
-        }
-        config.Security->Keys = options.Keys;
+        config.Security.emplace().Keys = options.Keys;
         for (PathRule &path : config.Paths)
         {
             path.Security.reset();
@@ -89,6 +85,7 @@ void AddNodeOptions(CLI::App &app, NodeOptions &options)
         ->delimiter(',')
         ->allow_extra_args(false)
         ->envname("RABIT_NODE_INTERFACE");
+    app.get_option("--keys")->envname("RABIT_NODE_KEYS");
     app.add_option("--record", options.Record, "Folder to record this node into, in place of the file's")
         ->envname("RABIT_NODE_RECORD");
     app.add_flag("--check", options.Check, "Check the options and files, start nothing");

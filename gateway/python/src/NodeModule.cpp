@@ -64,7 +64,7 @@ GatewayConfig ReadConfig(const std::string &file, const std::string &node, const
     return config;
 }
 
-// With the interfaces and the folder of recordings of the environment, as a node in C++ has them
+// With the interfaces, the folder of recordings and the keys of the environment, as a node in C++ has them
 // (NodeOptions): the lab runs each node in a network of its own.
 GatewayConfig ConfigOf(const std::string &file, const std::string &node, const std::string &text,
                        const std::set<std::string> &given)
@@ -88,6 +88,14 @@ GatewayConfig ConfigOf(const std::string &file, const std::string &node, const s
             config.Record.emplace();
         }
         config.Record->Folder = folder;
+    }
+    if (const char *keys = std::getenv("RABIT_NODE_KEYS"); keys != nullptr && *keys != 0)
+    {
+        config.Security.emplace().Keys = keys;
+        for (PathRule &path : config.Paths)
+        {
+            path.Security.reset();
+        }
     }
     return config;
 }

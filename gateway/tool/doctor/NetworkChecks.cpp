@@ -3,8 +3,10 @@
 #include <rabit/base/NaturalOrder.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <iterator>
+#include <utility>
 
 #include "doctor/MachineChecks.h"
 
@@ -42,7 +44,53 @@ std::vector<Interface> WithMulticast(const GatewayConfig &config, const std::vec
     return with.Paths.empty() ? std::vector<Interface>() : UsedBy(with, used);
 }
 
+std::set<std::uint32_t> SealedSessionsIn(const NetworkFacts &facts, int domain)
+{
+    std::set<std::uint32_t> sessions;
+    if (const auto found = facts.Domains.find(domain); found != facts.Domains.end())
+    {
+        for (const auto &[address, of] : found->second)
+        {
+            sessions.insert(of.SealedSessions.begin(), of.SealedSessions.end());
+        }
+    }
+    return sessions;
+}
+
+// Leaves out this machine's addresses, unless there are no others.
+void PreferOthers(std::set<std::string> &addresses, const std::vector<Interface> &used)
+{
+    std::set<std::string> others = addresses;
+    for (const Interface &one : used)
+    {
+        for (const std::string &own : one.Addresses)
+        {
+            others.erase(own);
+        }
+    }
+    if (!others.empty())
+    {
+        addresses = std::move(others);
+    }
+}
+
 }  // namespace
+
+std::size_t OwnSealedSessions(const GatewayConfig &config)
+{
+    const std::vector<GatewayConfig> paths = PathConfigsOf(config);
+    return static_cast<std::size_t>(std::count_if(
+        paths.begin(), paths.end(), [](const GatewayConfig &path) { return path.Security.has_value(); }));
+}
+
+bool IsNodeHeard(const NetworkFacts &facts, int domain, std::size_t ownSealedSessions)
+{
+    const auto found = facts.Domains.find(domain);
+    return found != facts.Domains.end() &&
+           (std::any_of(found->second.begin(), found->second.end(),
+                        [](const auto &voice) { return voice.second.AreNodes; }) ||
+            SealedSessionsIn(facts, domain).size() > ownSealedSessions);
+}
 
 std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<Interface> &used,
                                  const NetworkFacts &facts, const std::set<std::string> &heardBy)
@@ -97,14 +145,16 @@ std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<
         }
         std::set<std::string> others = trial.HeardOn;
         others.erase(one.Name);
-        findings.push_back({trial.AnsweredFrom.empty() ? Level::Note : Level::Good, subject,
-                            "it goes out" + (others.empty() ? "" : ", and comes in on " + Listed(others)) +
-                                (trial.AnsweredFrom.empty() ? std::string("; nobody answered")
-                                                            : "; answered by " + Listed(trial.AnsweredFrom)) +
-                                (trial.HeardFrom.empty() ? "" : "; heard from " + Listed(trial.HeardFrom)),
-                            trial.AnsweredFrom.empty() && trial.HeardFrom.empty()
-                                ? "if others should be there: docs/how_to/connect.md"
-                                : ""});
+        // Nodes with keys answer none without.
+        const bool hasKeys = SomePathHasKeys(config);
+        const std::string silence = hasKeys ? "; nobody without keys answered" : "; nobody answered";
+        const bool isGood = hasKeys || !trial.AnsweredFrom.empty();
+        findings.push_back(
+            {isGood ? Level::Good : Level::Note, subject,
+             "it goes out" + (others.empty() ? "" : ", and comes in on " + Listed(others)) +
+                 (trial.AnsweredFrom.empty() ? silence : "; answered by " + Listed(trial.AnsweredFrom)) +
+                 (trial.HeardFrom.empty() ? "" : "; heard from " + Listed(trial.HeardFrom)),
+             !isGood && trial.HeardFrom.empty() ? "if others should be there: docs/how_to/connect.md" : ""});
     }
     return findings;
 }
@@ -147,8 +197,12 @@ std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &
         for (const auto &[address, of] : voices)
         {
             names.insert(of.Names.begin(), of.Names.end());
+            if (!of.SealedSessions.empty())
+            {
+                names.insert("a node with keys");
+            }
             addresses.insert(address);
-            areNodes = areNodes || of.AreNodes;
+            areNodes = areNodes || of.AreNodes || !of.SealedSessions.empty();
         }
         if (names.empty())
         {
@@ -170,10 +224,10 @@ std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkF
 {
     const bool isFound =
         std::any_of(facts.Domains.begin(), facts.Domains.end(),
-                    [](const auto &domain)
+                    [&](const auto &domain)
                     {
-                        return std::any_of(domain.second.begin(), domain.second.end(),
-                                           [](const auto &voice) { return voice.second.AreNodes; });
+                        const bool isOurs = domain.first == config.Domain;
+                        return IsNodeHeard(facts, domain.first, isOurs ? OwnSealedSessions(config) : 0);
                     });
     if (anyNode || isFound)
     {
@@ -216,65 +270,51 @@ std::vector<Finding> OfOtherInterfaces(const GatewayConfig &config, const std::v
     return findings;
 }
 
-std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts,
-                            const std::set<std::string> &heard)
+std::vector<Finding> OfKeys(const GatewayConfig &config, const std::vector<Interface> &used,
+                            const NetworkFacts &facts, bool anyNode)
 {
-    std::set<std::string> with;
+    std::set<std::string> addresses;
     std::set<std::string> without;
     if (const auto ours = facts.Domains.find(config.Domain); ours != facts.Domains.end())
     {
         for (const auto &[address, of] : ours->second)
         {
-            with.insert(of.WithKeys.begin(), of.WithKeys.end());
-            std::set_difference(of.Names.begin(), of.Names.end(), of.WithKeys.begin(), of.WithKeys.end(),
-                                std::inserter(without, without.end()));
+            if (!of.SealedSessions.empty())
+            {
+                addresses.insert(address);
+            }
+            without.insert(of.Names.begin(), of.Names.end());
         }
     }
-    const std::string there = " in domain " + std::to_string(config.Domain);
-    // `heard` never has plain DDS programs.
-    const std::set<std::string> nodes = heard.empty() ? with : NodesWithKeys(config.Domain, facts);
-    std::set<std::string> out;
-    std::set_difference(nodes.begin(), nodes.end(), heard.begin(), heard.end(),
-                        std::inserter(out, out.end()));
+    const std::string domain = " in domain " + std::to_string(config.Domain);
+    const bool hasKeys = SomePathHasKeys(config);
     std::vector<Finding> findings;
-    if (!with.empty() && !config.Security)
+    if (!addresses.empty() && !hasKeys)
     {
         findings.push_back(
             {Level::Problem, "keys",
-             Listed(with) + there + (with.size() == 1 ? " has keys" : " have keys") +
-                 ", and this program has none: it stays out",
+             "nodes at " + Listed(addresses) + domain + " have keys, and this program has none: it stays out",
              "--keys FOLDER; `rabit keys add laptop --tool` makes one where the fleet's keys are"});
     }
-    if (!out.empty() && config.Security)
+    // This program hears its own sessions as well.
+    const std::size_t sessions = SealedSessionsIn(facts, config.Domain).size();
+    if (hasKeys && sessions > OwnSealedSessions(config) && !anyNode)
     {
-        const bool one = out.size() == 1;
+        PreferOthers(addresses, used);
         findings.push_back({Level::Problem, "keys",
-                            Listed(out) + there + (one ? " has keys, and does" : " have keys, and do") +
-                                " not let this program in",
-                            "keys of the same fleet, neither ended nor revoked, and the same level; " +
-                                std::string(one ? "its" : "their") + " log says why"});
+                            "nodes at " + Listed(addresses) + domain +
+                                " have keys, and none is heard with the keys of this program",
+                            "keys of the same fleet, with its newest bulletin and not revoked: "
+                            "`rabit keys check`"});
     }
-    if (!without.empty() && config.Security)
+    if (!without.empty() && hasKeys)
     {
         findings.push_back({Level::Note, "keys",
-                            Listed(without) + there + (without.size() == 1 ? " has" : " have") +
+                            Listed(without) + domain + (without.size() == 1 ? " has" : " have") +
                                 " no keys: what it says is not heard",
                             "`rabit keys add`, if it belongs to this fleet"});
     }
     return findings;
-}
-
-std::set<std::string> NodesWithKeys(int domain, const NetworkFacts &facts)
-{
-    std::set<std::string> names;
-    if (const auto ours = facts.Domains.find(domain); ours != facts.Domains.end())
-    {
-        for (const auto &[address, of] : ours->second)
-        {
-            names.insert(of.NodesWithKeys.begin(), of.NodesWithKeys.end());
-        }
-    }
-    return names;
 }
 
 }  // namespace Rabit::Tool::Doctor

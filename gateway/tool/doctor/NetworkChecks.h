@@ -2,6 +2,7 @@
 
 #include <rabit/gateway/GatewayConfig.h>
 
+#include <cstddef>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +14,12 @@
 // Problems of the network, by what NetworkTrial found. Pure.
 namespace Rabit::Tool::Doctor
 {
+
+// Sessions of this program with keys: one on each path that has some.
+std::size_t OwnSealedSessions(const GatewayConfig &config);
+// True if a node was heard in the domain: one without keys, or, by the number of sessions with keys, another
+// one than this program.
+bool IsNodeHeard(const NetworkFacts &facts, int domain, std::size_t ownSealedSessions);
 
 // Judges multicast on the interfaces used, out and in. `heardBy`: the nodes that hear this program
 // (NodesThatHear); their addresses are reached, whether they answered the trial or not.
@@ -31,11 +38,10 @@ std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkF
 // others. `anyNode`: a node was heard on those that are used.
 std::vector<Finding> OfOtherInterfaces(const GatewayConfig &config, const std::vector<Interface> &used,
                                        const NetworkFacts &facts, bool anyNode);
-// Finds participants of our domain with keys if this program has none, and the reverse. `heard`: the names of
-// nodes and tools that are heard.
-std::vector<Finding> OfKeys(const GatewayConfig &config, const NetworkFacts &facts,
-                            const std::set<std::string> &heard);
-// The names of nodes and tools with keys that announced themselves in the domain.
-std::set<std::string> NodesWithKeys(int domain, const NetworkFacts &facts);
+// Finds nodes of our domain with keys if this program has none, or hears none with its own, and programs
+// without keys if this one has some. `used`: interfaces; this program is heard at their addresses, too.
+// `anyNode`: a node was heard.
+std::vector<Finding> OfKeys(const GatewayConfig &config, const std::vector<Interface> &used,
+                            const NetworkFacts &facts, bool anyNode);
 
 }  // namespace Rabit::Tool::Doctor

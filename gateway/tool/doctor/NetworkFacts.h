@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -7,13 +8,12 @@
 namespace Rabit::Tool::Doctor
 {
 
-// The participants that announced themselves by multicast from one address.
+// The participants that were heard by multicast from one address.
 struct Voices
 {
-    std::set<std::string> Names;            // LabelOf each
-    bool AreNodes = false;                  // at least one of them is a node of Rabit
-    std::set<std::string> WithKeys{};       // those of them that take part in DDS Security
-    std::set<std::string> NodesWithKeys{};  // those of these that are nodes of Rabit, or its tools
+    std::set<std::string> Names;               // LabelOf each that announced itself
+    bool AreNodes = false;                     // at least one of these is a node of Rabit
+    std::set<std::uint32_t> SealedSessions{};  // the tags of sessions with keys, whose names are not known
 };
 
 // The result of sending by multicast on one interface.

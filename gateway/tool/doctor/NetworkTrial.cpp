@@ -20,6 +20,7 @@
 #include <thread>
 #include <utility>
 
+#include "doctor/NetworkChecks.h"
 #include "doctor/RtpsCall.h"
 #include "doctor/UdpSocket.h"
 
@@ -38,6 +39,8 @@ constexpr std::size_t MostCalledAlone = 64;
 // At 20 % loss each way, one of 1000 participants answers none of seven calls.
 constexpr int Calls = 7;
 constexpr std::chrono::milliseconds BetweenCalls{800};
+// After the first call, with so many others goes a sealed one, if no node is heard by then.
+constexpr int SealedCalls = 3;
 
 sockaddr_in AddressOf(const std::string &address, int port)
 {
@@ -152,11 +155,12 @@ class NetworkTrial::Work
 {
 public:
     Work(const std::vector<Interface> &used, const std::vector<Interface> &unused, std::string ownName,
-         const std::vector<int> &callIn, const std::vector<int> &listenIn)
+         const std::vector<int> &callIn, const std::vector<int> &listenIn, std::size_t ownSealedSessions)
         : _interfaces(used),
           _unused(unused),
           _ownName(std::move(ownName)),
           _domain(callIn.empty() ? -1 : callIn.front()),
+          _ownSealedSessions(ownSealedSessions),
           _end(::eventfd(0, EFD_CLOEXEC))
     {
         std::random_device random;
@@ -190,10 +194,6 @@ public:
     {
         const std::lock_guard lock(_mutex);
         NetworkFacts facts = _facts;
-        for (const auto &[participant, node] : _keyed)
-        {
-            facts.Domains[node.Domain][node.Address].NodesWithKeys.insert(node.Name);
-        }
         for (const auto &[participant, place] : _elsewhere)
         {
             if (!_onUsed.contains(participant))
@@ -228,13 +228,6 @@ private:
         std::size_t Interface;
         std::string Address;
         int Port;
-    };
-
-    struct KeyedNode
-    {
-        int Domain = 0;
-        std::string Name;
-        std::string Address;
     };
 
     struct Place
@@ -302,13 +295,20 @@ private:
         return MakeCall(id, address, static_cast<std::uint16_t>(PortOf(socket)));
     }
 
-    // Calls again on all interfaces. Errors were told by the first call.
+    // Calls again on all interfaces. Errors were told by the first call. If it was in vain, nodes with keys
+    // may be there.
     void CallAgain(int number)
     {
+        const bool isSealedToo = number <= SealedCalls && !IsAnyNodeHeard();
         for (const Mouth &mouth : _mouths)
         {
             static_cast<void>(Call(mouth, _domain, number));
             const UdpSocket &alone = _ears[mouth.AloneEar].Where;
+            if (isSealedToo)
+            {
+                static_cast<void>(
+                    Send(_ears[mouth.Ear].Where, CallGroup, CallPort(_domain), MakeSealedCall()));
+            }
             for (const auto &[participant, place] : _unanswered)
             {
                 if (place.Interface == mouth.Interface)
@@ -318,6 +318,12 @@ private:
                 }
             }
         }
+    }
+
+    bool IsAnyNodeHeard() const
+    {
+        const std::lock_guard lock(_mutex);
+        return IsNodeHeard(_facts, _domain, _ownSealedSessions);
     }
 
     std::vector<std::uint8_t> TrialOn(std::size_t interface) const
@@ -389,11 +395,15 @@ private:
             }
             return;
         }
-        const auto heard = HeardIn(datagram.Bytes);
-        if (heard && heard->Leaves)
+        if (const auto session = SealedTagIn(datagram.Bytes))
         {
-            _keyed.erase(heard->Sender);
+            if (ear.Domain >= 0 && on != _interfaces.end())
+            {
+                TakeSealed(ear.Domain, datagram.From, *session);
+            }
+            return;
         }
+        const auto heard = HeardIn(datagram.Bytes);
         // Ignores the participants that this program makes itself, here and with DDS.
         if (!heard || !heard->Announces || heard->Name == _ownName ||
             std::equal(_id.begin(), _id.end() - 2, heard->Sender.begin()))
@@ -432,15 +442,20 @@ private:
         {
             Voices &from = voices[datagram.From];
             from.AreNodes = from.AreNodes || heard->IsNode;
-            const std::string label = LabelOf(*heard);
-            AddTo(from.Names, label, MostNames);
-            if (heard->HasKeys && from.Names.contains(label))
+            AddTo(from.Names, LabelOf(*heard), MostNames);
+        }
+    }
+
+    // Nodes with keys send no other datagrams.
+    void TakeSealed(int domain, const std::string &address, std::uint32_t session)
+    {
+        auto &voices = _facts.Domains[domain];
+        if (voices.size() < MostAddresses || voices.contains(address))
+        {
+            Voices &from = voices[address];
+            if (from.SealedSessions.size() < MostNames)
             {
-                from.WithKeys.insert(label);
-                if (heard->IsNode && _keyed.size() < MostParticipants)
-                {
-                    _keyed[heard->Sender] = {ear.Domain, heard->Name, datagram.From};
-                }
+                from.SealedSessions.insert(session);
             }
         }
     }
@@ -469,6 +484,7 @@ private:
     const std::string _ownName;
     ParticipantId _id{};
     const int _domain;  // the configured one
+    const std::size_t _ownSealedSessions;
     const UdpSocket _end;
     int _trialPort = 0;
     std::vector<Ear> _ears;
@@ -476,7 +492,6 @@ private:
     std::map<ParticipantId, Unanswered> _unanswered;  // for the thread alone
     mutable std::mutex _mutex;
     NetworkFacts _facts;
-    std::map<ParticipantId, KeyedNode> _keyed;  // nodes and tools with keys that have not left
     std::set<ParticipantId> _onUsed;            // heard on an interface that is used
     std::map<ParticipantId, Place> _elsewhere;  // heard on another one
     std::thread _thread;
@@ -484,8 +499,8 @@ private:
 
 NetworkTrial::NetworkTrial(const std::vector<Interface> &used, const std::vector<Interface> &unused,
                            std::string ownName, const std::vector<int> &callIn,
-                           const std::vector<int> &listenIn)
-    : _work(std::make_unique<Work>(used, unused, std::move(ownName), callIn, listenIn))
+                           const std::vector<int> &listenIn, std::size_t ownSealedSessions)
+    : _work(std::make_unique<Work>(used, unused, std::move(ownName), callIn, listenIn, ownSealedSessions))
 {
 }
 

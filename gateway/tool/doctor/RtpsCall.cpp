@@ -6,6 +6,7 @@
 #include "common/ParticipantIdentity.h"
 #include "common/RtpsReader.h"
 #include "common/RtpsWriter.h"
+#include "envelope/Outer.h"
 #include "guard/RtpsMessage.h"
 
 namespace Rabit::Tool::Doctor
@@ -47,7 +48,6 @@ void ReadParameters(RtpsReader list, bool littleEndian, HeardCall &heard)
         }
         const bool isName = parameter->Id == Parameters::EntityName;
         const bool isUserData = parameter->Id == Parameters::UserData;
-        heard.HasKeys = heard.HasKeys || parameter->Id == Parameters::IdentityToken;
         if (isName || isUserData)
         {
             RtpsReader value(parameter->Value, littleEndian);
@@ -70,17 +70,17 @@ void ReadData(const ConstSubmessage &data, HeardCall &heard)
         return;
     }
     reader.Skip(toQos - 8u);
+    bool leaves = false;
     if ((data.Flags & InlineQosFlag) != 0)
     {
         constexpr std::uint8_t disposedOrUnregistered = 3;
         while (const auto parameter = TakeParameter(reader))
         {
-            heard.Leaves =
-                heard.Leaves || (parameter->Id == Parameters::StatusInfo && parameter->Value.size() == 4 &&
-                                 (parameter->Value[3] & disposedOrUnregistered) != 0);
+            leaves = leaves || (parameter->Id == Parameters::StatusInfo && parameter->Value.size() == 4 &&
+                                (parameter->Value[3] & disposedOrUnregistered) != 0);
         }
     }
-    if (heard.Leaves || (data.Flags & DataFlag) == 0)
+    if (leaves || (data.Flags & DataFlag) == 0)
     {
         return;
     }
@@ -172,6 +172,21 @@ std::vector<std::uint8_t> MakeCall(const ParticipantId &sender, std::array<std::
     AppendSubmessageHeader(message, SubmessageKind::Data, body.size(), DataFlag);
     Append(message, body);
     return message;
+}
+
+std::optional<std::uint32_t> SealedTagIn(std::span<const std::uint8_t> datagram)
+{
+    Envelope::Outer outer;
+    const bool isSealed = Envelope::ReadOuter(datagram, outer) == Envelope::OuterFault::None;
+    return isSealed && outer.Epoch != Envelope::EpochOfCalls ? std::optional(outer.Tag) : std::nullopt;
+}
+
+std::vector<std::uint8_t> MakeSealedCall()
+{
+    const Envelope::Outer outer{.Epoch = Envelope::EpochOfCalls};
+    std::vector<std::uint8_t> datagram(Envelope::OuterOverhead(outer.Kind));
+    Envelope::WriteOuter(outer, datagram);
+    return datagram;
 }
 
 }  // namespace Rabit::Tool::Doctor

@@ -1,5 +1,5 @@
 // The announcements by which DDS participants find each other (OMG DDSI-RTPS 2.3, 8.5.3 and 9.6), for a
-// listener on a network.
+// listener on a network. Of nodes with keys it only sees that there are some.
 #pragma once
 
 #include <array>
@@ -23,10 +23,8 @@ struct HeardCall
     std::string Name{};   // of the participant, if it announces itself here; printable, 64 characters at most
     bool IsNode = false;  // of Rabit
     bool IsRos = false;   // of ROS 2, which names the enclave in the participant's USER_DATA
-    bool HasKeys = false;  // it says that it takes part in DDS Security
     bool Announces = false;
     std::uint16_t Port = 0;  // at which it takes announcements for itself alone, over UDP and IPv4; 0: none
-    bool Leaves = false;     // the participant says that it is gone
 };
 // Empty if the datagram is not RTPS.
 std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram);
@@ -39,6 +37,14 @@ std::string LabelOf(const HeardCall &heard);
 // themselves to it. They forget it after one second.
 std::vector<std::uint8_t> MakeCall(const ParticipantId &sender, std::array<std::uint8_t, 4> address,
                                    std::uint16_t port);
+
+// Returns the tag of the sender's session if the datagram looks like one of a node with keys
+// (envelope/Outer.h), and is no sealed call. Such a node sends no other datagrams, and each of its sessions
+// has a tag of its own.
+std::optional<std::uint32_t> SealedTagIn(std::span<const std::uint8_t> datagram);
+// Returns a sealed call: each node with keys answers it by introducing itself to all, once
+// (Envelope::EpochOfCalls).
+std::vector<std::uint8_t> MakeSealedCall();
 
 // Returns the port of a domain's announcements by multicast.
 constexpr int CallPort(int domain)

@@ -22,7 +22,7 @@ PARTS = [
     ("memcpy, memcmp", r"mem(cpy|cmp|move|set).*\[.*libc"),
     ("the guard", r"Rabit::Rtps::"),
     ("the backend", r"Rabit::(Cyclone|FastDds)::|Rejoining|Vendor|WriteAndTell|WriteOne|ReadAndTell|HeldDatagrams"
-                    r"|SessionLog|HandlerGate|SendingSamples|HardwareAddresses"),
+                    r"|SessionLog|HandlerGate|HardwareAddresses"),
     ("encode, decode", r"Idl::|Bench::Sample|fastcdr"),
     ("the links", r"Link(Sender|Receiver|Peer|Node|Outbox|Frame|Context)|Path(Control|Timers)|RoundTrip|ReorderBuffer"
                   r"|Outcome|Assembly|IsWellFormed|RingBuffer"),

@@ -13,6 +13,7 @@ import time
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "harness"))
 import contestants  # noqa: E402  (which finds tests/integration)
 import expectations  # noqa: E402
+import fleet_keys  # noqa: E402
 import judge  # noqa: E402
 
 from figures import (command_delays, first_all_up, percentile, poses_heard, shown_ages, shown_rows,  # noqa: E402
@@ -34,8 +35,12 @@ DATAGRAM = 1400
 class Fleet:
     """Programs of one kind on one field. The transport MIXED gives the nodes the two backends in turns."""
 
-    def __init__(self, ground, folder, contestant, transport):
+    def __init__(self, ground, folder, contestant, transport, has_keys=False, budget=None):
         self.ground = ground
+        self._budget = budget
+        self._rabit = pathlib.Path(folder, "rabit") if has_keys else None
+        if has_keys:
+            fleet_keys.make(self._rabit, ground.folder, [])
         self.contestant = contestant
         self.transport = transport
         self._folder = pathlib.Path(folder)
@@ -54,8 +59,18 @@ class Fleet:
     def start_ledger(self, node, *options):
         state = pathlib.Path(self.ground.folder, node + ".state")
         state.mkdir(exist_ok=True)
+        pathlib.Path(self.ground.folder, node + ".yaml").write_text(fleet_keys.CONFIG.format(node=node))
         return self.ground.start(node, [self._folder / "ledger_node", "--node", node, "--ledger", self.ledger(node),
-                                        "--state-dir", state, "--transport", self.transport_of(node), *options])
+                                        "--state-dir", state, "--transport", self.transport_of(node), *self._keys(node), *options])
+
+    def _keys(self, node):
+        """Options of the program of a node whose configuration has been written."""
+        if self._rabit is None:
+            return []
+        folder = fleet_keys.of(self.ground.folder, node)
+        if not folder.exists():
+            fleet_keys.add(self._rabit, self.ground.folder, node)
+        return ["--keys", folder]
 
     def restart_ledger(self, node, *options):
         self.ground.kill(node)
@@ -71,10 +86,11 @@ class Fleet:
         """A program of examples/, named as its node or else an aircraft, with its configuration for any interface."""
         text = (EXAMPLES / config).read_text()
         path = pathlib.Path(self.ground.folder, node + ".yaml")
-        path.write_text("".join(line for line in text.splitlines(keepends=True) if not line.startswith("interfaces:")))
+        path.write_text("".join(line for line in text.splitlines(keepends=True) if not line.startswith("interfaces:")) +
+                        (f"\nradio: {{budget: {self._budget}}}\n" if self._budget else ""))
         program = "ground" if node == "ground" else "uav"
         return self.ground.start(node, [self._folder / program, "--config", path, "--node", node, "--domain", DOMAIN,
-                                        "--transport", self.transport_of(node), *options])
+                                        "--transport", self.transport_of(node), *self._keys(node), *options])
 
     def ledgers(self):
         return expectations.Run({node: self.ledger(node).read_text() if self.ledger(node).exists() else ""

@@ -2,9 +2,10 @@
 """Measures fleets on thin radios, and prints a table: nodes with gateways, and plain DDS programs where they can do the
 work. rows.py has the rows and their limits, measures.py and meeting.py what the figures are.
 
-Usage: radio_table.py [--only TEXT]... [--long | --cut SECONDS] [--transports NAME,...] [--output FILE] [--judge] PROGRAMS
+Usage: radio_table.py [--only TEXT]... [--long | --cut SECONDS] [--transports NAME,...] [--keys] [--budget B/s] [--output FILE]
+                      [--judge] PROGRAMS
 A transport is a backend, or mixed: the nodes have the two in turns. PROGRAMS is the folder of the programs (build/release/bin). --only: rows whose name has that text. --long: also rows that
-take minutes; --cut: those too, but none is watched for longer than that. --output writes FILE.json and FILE.md. --judge: exit code 1 if a limit is missed. Exit code 77: this
+take minutes; --cut: those too, but none is watched for longer than that. --keys: all nodes have keys; plain programs are left out. --budget: of each node of the examples, or `auto`. --output writes FILE.json and FILE.md. --judge: exit code 1 if a limit is missed. Exit code 77: this
 machine does not allow it."""
 
 import argparse
@@ -43,7 +44,7 @@ def measure_of(row):
 def run(row, options, contestant, transport):
     radio = pathlib.Path(options.programs) / "radio"
     with radio_field.RadioField(radio, measures.nodes_of(row), row.medium) as ground:
-        fleet = measures.Fleet(ground, options.programs, contestant, transport)
+        fleet = measures.Fleet(ground, options.programs, contestant, transport, options.keys, options.budget)
         arguments = {name: min(value, options.cut) if options.cut and name in ("settle_s", "seconds", "for_s") else value
                      for name, value in row.options.items()}
         figures = measure_of(row)(fleet, **arguments)
@@ -95,6 +96,8 @@ def main():
     parser.add_argument("--long", action="store_true")
     parser.add_argument("--cut", type=float)
     parser.add_argument("--transports", default="fastdds,cyclonedds")
+    parser.add_argument("--keys", action="store_true")
+    parser.add_argument("--budget", help="`auto`, or bytes a second")
     parser.add_argument("--output")
     parser.add_argument("--judge", action="store_true")
     parser.add_argument("programs")
@@ -106,7 +109,7 @@ def main():
     results = []
     with field.skipping():
         for row in chosen:
-            for contestant in ([PLAIN] if row.plain else []) + [RABIT]:
+            for contestant in ([PLAIN] if row.plain and not options.keys else []) + [RABIT]:
                 for transport in options.transports.split(","):
                     by_hand = pathlib.Path(options.programs) / f"bench_raw_{transport}"
                     if contestant == PLAIN and not by_hand.exists():

@@ -52,7 +52,7 @@ TEST_F(FleetAuthorityTest, MakesNodesWhoseKeysFit)
     Add("uav1");
     const MemberFolder member(FolderOf("uav1"));
     EXPECT_EQ(member.WhyNot("uav1"), "");
-    EXPECT_THAT(member.Lacks(AccessFor("uav1")), IsEmpty());
+    EXPECT_THAT(member.Lacks(Needs()), IsEmpty());
     EXPECT_EQ(member.Epoch(), 1);
 }
 
@@ -101,10 +101,10 @@ TEST_F(FleetAuthorityTest, IsChangedByOneAtATime)
 
 TEST_F(FleetAuthorityTest, RefusesMorePermissionsThanACardHolds)
 {
-    Access access = AccessFor("uav1");
+    Access access = Needs();
     for (int i = 0; i < 300; ++i)
     {
-        access.Publish.push_back({"SomeMessage" + std::to_string(i), {""}});
+        access.Publish.push_back("SomeMessage" + std::to_string(i));
     }
     EXPECT_THAT(WhyNot([&] { PermissionsFor(access); }), HasSubstr("too many topics"));
 }
@@ -124,22 +124,23 @@ TEST_F(FleetAuthorityTest, MakesNothingWithTheKeyOfAnotherFleet)
     EXPECT_THAT(WhyNot([&] { Add("uav1"); }), HasSubstr("not the key of the authority"));
 }
 
-TEST_F(FleetAuthorityTest, OpensAnEncryptedKeyByItsPassphraseAlone)
+TEST_F(FleetAuthorityTest, RefusesAFolderOfTheFormerFormat)
 {
-    const std::string place = Root + "/locked";
-    FleetAuthority::Init(place, "open sesame");
-    EXPECT_THAT(ReadFile(place + "/authority/key"), HasSubstr("ENCRYPTED PRIVATE KEY"));
-    const auto add = [&](const std::string &word)
-    {
-        return WhyNot(
-            [&]
-            {
-                FleetAuthority(place, [&](const std::string &) { return Secret(word); })
-                    .Add(RequestFor("uav1"), Year());
-            });
-    };
-    EXPECT_THAT(add("wrong"), HasSubstr("the passphrase does not open"));
-    EXPECT_EQ(add("open sesame"), "");
+    const std::string former = Root + "/former";
+    MakeFormer(former, "authority/identity.pem");
+    const auto told = HasSubstr("keys of a former format");
+    EXPECT_THAT(WhyNot([&] { const FleetAuthority fleet(former); }), told);
+    EXPECT_THAT(WhyNot([&] { FleetAuthority::Init(former); }), told);
+    MakeFormer(former + "/uav1", "certificate.pem");
+    EXPECT_THAT(WhyNot([&] { const FleetAuthority fleet(former + "/uav1"); }), told);
+    EXPECT_FALSE(std::filesystem::exists(former + "/authority/key"));
+}
+
+TEST_F(FleetAuthorityTest, ListsNodesInTheirNaturalOrder)
+{
+    Add("uav10");
+    Add("uav2");
+    EXPECT_THAT(FleetAuthority(Place()).Nodes(), ElementsAre("uav2", "uav10"));
 }
 
 TEST_F(FleetAuthorityTest, AddsANodeWithoutANewEpochForTheOthers)
@@ -286,6 +287,24 @@ TEST_F(FleetAuthorityTest, PutsTheOldKeysBackAfterARenewalThatWasCutShort)
     std::filesystem::rename(FolderOf("uav1"), Place() + "/.uav1.old");
     EXPECT_THAT(FleetAuthority(Place()).Nodes(), ElementsAre("uav1"));
     EXPECT_EQ(ReadSecret(MemberFiles(FolderOf("uav1")).Key), key);
+}
+
+TEST_F(FleetAuthorityTest, LeavesTheNewKeysAfterARenewalThatWasCutShortAtItsEnd)
+{
+    Add("uav1");
+    const std::string key = ReadSecret(MemberFiles(FolderOf("uav1")).Key);
+    std::filesystem::create_directory(Place() + "/.uav1.old");
+    const FleetAuthority fleet(Place());
+    EXPECT_EQ(ReadSecret(MemberFiles(FolderOf("uav1")).Key), key);
+    EXPECT_FALSE(std::filesystem::exists(Place() + "/.uav1.old"));
+}
+
+TEST_F(FleetAuthorityTest, RevokesNoNodeWhoseNameBeginsAlike)
+{
+    Add("uav1");
+    Add("uav1.vision");
+    EXPECT_EQ(Revoke("uav1"), 1U);
+    EXPECT_EQ(MemberFolder(FolderOf("uav1.vision")).WhyNot("uav1.vision"), "");
 }
 
 TEST_F(FleetAuthorityTest, TakesNoCertificateThatItDidNotSign)

@@ -38,15 +38,16 @@ protected:
     std::string Place() const { return Root + "/keys"; }
     std::string FolderOf(const std::string &node) const { return Place() + "/" + node; }
 
-    static Access AccessFor(const std::string &node)
-    {
-        return {.Domain = 7,
-                .Publish = {{"rabit/Link", {""}}, {"Pose", {"", node}}},
-                .Subscribe = {{"rabit/Link", {""}}, {"Pose", {"uav*"}}}};
-    }
+    static Access Needs() { return {.Publish = {"rabit/Link", "Pose"}, .Subscribe = {"rabit/Link", "Pose"}}; }
     static FleetAuthority::Request RequestFor(const std::string &node)
     {
-        return {.Node = node, .Allowed = PermissionsFor(AccessFor(node))};
+        return {.Node = node, .Allowed = PermissionsFor(Needs())};
+    }
+    // Makes the folder look like one of the former format.
+    static void MakeFormer(const std::string &folder, const std::string &file)
+    {
+        std::filesystem::create_directories(std::filesystem::path(folder + "/" + file).parent_path());
+        Overwrite(folder + "/" + file, "X.509");
     }
     static FleetAuthority::Period Year() { return {.Now = Now, .Days = 365}; }
     void Add(const std::string &node) const { FleetAuthority(Place()).Add(RequestFor(node), Year()); }

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "KeysFolder.h"
+#include "FleetFolder.h"
 
 namespace Rabit::Keys
 {
@@ -13,7 +13,7 @@ namespace
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class KeyFilesTest : public KeysFolder
+class KeyFilesTest : public FleetFolder
 {
 };
 
@@ -61,6 +61,12 @@ TEST_F(KeyFilesTest, AFolderAndAHugeFileAreNoKeys)
     EXPECT_THAT(WhyNot([&] { ReadFile(Root); }), HasSubstr("is no file"));
     std::ofstream(Root + "/huge") << std::string(2 << 20, 'x');
     EXPECT_THAT(WhyNot([&] { ReadFile(Root + "/huge"); }), HasSubstr("larger than 1 MiB"));
+}
+
+TEST_F(KeyFilesTest, AFifoIsNoKey)
+{
+    ASSERT_EQ(::mkfifo((Root + "/fifo").c_str(), 0600), 0);
+    EXPECT_THAT(WhyNot([&] { ReadFile(Root + "/fifo"); }), HasSubstr("is no file"));
 }
 
 TEST_F(KeyFilesTest, AFileThatCannotBeWrittenLeavesNothingBehind)

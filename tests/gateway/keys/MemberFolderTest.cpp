@@ -57,9 +57,9 @@ TEST_F(MemberFolderTest, IsForOneNameAlone)
 
 TEST_F(MemberFolderTest, NamesThePermissionsThatAreMissing)
 {
-    Access access = AccessFor("uav1");
-    access.Publish.push_back({"Photo", {""}});
-    access.Subscribe.push_back({"*", {"*"}});
+    Access access = Needs();
+    access.Publish.push_back("Photo");
+    access.Subscribe.push_back("*");
     EXPECT_THAT(MemberFolder(FolderOf("uav1")).Lacks(access), ElementsAre("write Photo", "read *"));
 }
 
@@ -76,8 +76,8 @@ TEST_F(MemberFolderTest, RefusesTheKeyOfAnotherNode)
 
 TEST_F(MemberFolderTest, RefusesThePermissionsOfAnotherNode)
 {
-    Access more = AccessFor("uav3");
-    more.Publish.push_back({"Photo", {""}});
+    Access more = Needs();
+    more.Publish.push_back("Photo");
     FleetAuthority(Place()).Add({.Node = "uav3", .Allowed = PermissionsFor(more)}, Year());
     EXPECT_THAT(WhyNotWith("permissions", FolderOf("uav3")), HasSubstr("does not belong to the certificate"));
 }
@@ -95,6 +95,52 @@ TEST_F(MemberFolderTest, RefusesTheBulletinOfAnotherFleet)
 TEST_F(MemberFolderTest, SaysThatThereIsNoFolder)
 {
     EXPECT_THAT(WhyNoMember(Root + "/none"), HasSubstr("there is no folder of keys"));
+}
+
+TEST_F(MemberFolderTest, IsNotTheFolderOfTheFleet)
+{
+    EXPECT_THAT(WhyNoMember(Place()),
+                HasSubstr("is the folder of a fleet; name the folder of one node in it"));
+}
+
+TEST_F(MemberFolderTest, OfARevokedNodeSaysHowToMakeOthers)
+{
+    const std::string folder = CopyOf("uav1");
+    Revoke("uav1");
+    std::filesystem::copy_file(Place() + "/authority/bulletin", MemberFiles(folder).Bulletin,
+                               std::filesystem::copy_options::overwrite_existing);
+    EXPECT_THAT(MemberFolder(folder).WhyNot("uav1"),
+                HasSubstr("is revoked; make new keys with `rabit keys add`"));
+    Add("uav1");
+    EXPECT_EQ(MemberFolder(FolderOf("uav1")).WhyNot("uav1"), "");
+}
+
+TEST_F(MemberFolderTest, NeedsEachFile)
+{
+    for (const char *name : {"certificate", "permissions", "authority", "bulletin", "key"})
+    {
+        const std::string file = FolderOf("uav1") + "/" + name;
+        std::filesystem::rename(file, Root + "/away");
+        EXPECT_THAT(WhyNoMember(FolderOf("uav1")), HasSubstr(file));
+        std::filesystem::rename(Root + "/away", file);
+    }
+    EXPECT_EQ(WhyNoMember(FolderOf("uav1")), "");
+}
+
+TEST_F(MemberFolderTest, RefusesAFolderOfTheFormerFormat)
+{
+    for (const std::string file : {"certificate.pem", "private_key.pem"})
+    {
+        MakeFormer(Root + "/" + file, file);
+        EXPECT_THAT(WhyNoMember(Root + "/" + file), HasSubstr("keys of a former format"));
+    }
+}
+
+TEST_F(MemberFolderTest, RefusesThePermissionsFromBeforeARenewal)
+{
+    const std::string before = CopyOf("uav1");
+    FleetAuthority(Place()).Renew({.Node = "uav1", .Allowed = PermissionsFor({.Publish = {"Pose"}})}, Year());
+    EXPECT_THAT(WhyNotWith("permissions", before), HasSubstr("older than the certificate"));
 }
 
 TEST_F(MemberFolderTest, NeedsTheKeyUnlessTheNodeHasIt)
@@ -170,6 +216,33 @@ TEST_F(MemberFolderTest, StoresANewerBulletinInTheFolder)
     const MemberFolder again(folder);
     EXPECT_EQ(again.Epoch(), 2);
     EXPECT_THAT(again.Keys().Bulletins, ElementsAre(keys.Bulletins.front(), newer));
+}
+
+TEST_F(MemberFolderTest, KeepsTheBulletinsThatAPersonCopiedMeanwhile)
+{
+    const std::string folder = CopyOf("uav1");
+    const MemberKeys keys = MemberFolder(folder).Keys();
+    const Bytes heard = NewerBulletin();
+    // Issues both epochs anew.
+    Add("uav3");
+    std::filesystem::copy_file(Place() + "/authority/bulletin", MemberFiles(folder).Bulletin,
+                               std::filesystem::copy_options::overwrite_existing);
+    const auto copied = MemberFolder(folder).Keys().Bulletins;
+    ASSERT_EQ(copied.size(), 2U);
+    ASSERT_NE(copied.back(), heard);
+    EXPECT_TRUE(keys.Store(2, heard));
+    EXPECT_EQ(MemberFolder(folder).Keys().Bulletins, copied);
+}
+
+TEST_F(MemberFolderTest, ReplacesBulletinsOfAnotherFleetThatAPersonCopied)
+{
+    const std::string folder = CopyOf("uav1");
+    const MemberKeys keys = MemberFolder(folder).Keys();
+    const Bytes heard = NewerBulletin();
+    std::filesystem::copy_file(OtherFleet() + "/bulletin", MemberFiles(folder).Bulletin,
+                               std::filesystem::copy_options::overwrite_existing);
+    EXPECT_TRUE(keys.Store(2, heard));
+    EXPECT_THAT(MemberFolder(folder).Keys().Bulletins, ElementsAre(keys.Bulletins.front(), heard));
 }
 
 TEST_F(MemberFolderTest, StoresANewerBulletinElsewhereIfTheFolderCannotBeWritten)

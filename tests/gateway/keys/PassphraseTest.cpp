@@ -6,7 +6,10 @@
 #include <memory>
 #include <new>
 
-#include "KeysFolder.h"
+#include "FleetFolder.h"
+#include "keys/Certificates.h"
+#include "keys/MemberSecrets.h"
+#include "keys/PrivateKeyPem.h"
 
 namespace Rabit::Keys
 {
@@ -17,11 +20,11 @@ using testing::ElementsAre;
 using testing::EndsWith;
 using testing::HasSubstr;
 
-// A fleet whose authorities have encrypted keys, beside the plain one of KeysFolder.
-class PassphraseTest : public KeysFolder
+// A fleet whose authority has an encrypted key, beside the plain one of FleetFolder.
+class PassphraseTest : public FleetFolder
 {
 protected:
-    PassphraseTest() { FleetKeys::Init(Closed(), "red", {.Now = TestNow, .Days = 3650}, "open sesame"); }
+    PassphraseTest() { FleetAuthority::Init(Closed(), "open sesame"); }
 
     std::string Closed() const { return Root + "/closed"; }
     AskPassphrase Answer(const std::string &passphrase)
@@ -34,41 +37,38 @@ protected:
     }
     void AddWith(AskPassphrase ask) const
     {
-        FleetKeys(Closed(), std::move(ask)).Add(RequestFor("uav1"), {.Now = TestNow, .Days = 365});
+        FleetAuthority(Closed(), std::move(ask)).Add(RequestFor("uav1"), Year());
     }
     bool IsMade() const { return std::filesystem::exists(Closed() + "/uav1"); }
 
     std::vector<std::string> _asked;
 };
 
-TEST_F(PassphraseTest, OnlyTheKeysOfTheAuthoritiesAreEncrypted)
+TEST_F(PassphraseTest, OnlyTheKeyOfTheAuthorityIsEncrypted)
 {
     AddWith(Answer("open sesame"));
-    for (const char *name : {"identity_key.pem", "permissions_key.pem"})
-    {
-        EXPECT_THAT(ReadSecret(Closed() + "/authority/" + name), HasSubstr("BEGIN ENCRYPTED PRIVATE KEY"));
-    }
-    EXPECT_EQ(NodeKeys(Closed() + "/uav1").WhyNot("uav1", "fastdds", 7, TestNow), "");
+    EXPECT_THAT(ReadSecret(Closed() + "/authority/key"), HasSubstr("BEGIN ENCRYPTED PRIVATE KEY"));
+    EXPECT_EQ(MemberFolder(Closed() + "/uav1").WhyNot("uav1"), "");
 }
 
-TEST_F(PassphraseTest, EachKeyIsOpenedOnce)
+TEST_F(PassphraseTest, TheKeyIsOpenedOnce)
 {
-    const FleetKeys fleet(Closed(), Answer("open sesame"));
-    fleet.Add(RequestFor("uav1"), {.Now = TestNow, .Days = 365});
-    fleet.Renew(fleet.RequestOf("uav1"), {.Now = TestNow, .Days = 365});
-    fleet.RevokeOlder("uav1", TestNow);
-    EXPECT_THAT(_asked, ElementsAre(EndsWith("permissions_key.pem"), EndsWith("identity_key.pem")));
+    const FleetAuthority fleet(Closed(), Answer("open sesame"));
+    fleet.Add(RequestFor("uav1"), Year());
+    fleet.Renew(fleet.RequestOf("uav1"), Year());
+    fleet.RevokeOlder("uav1", Now);
+    EXPECT_THAT(_asked, ElementsAre(EndsWith("/authority/key")));
 }
 
-TEST_F(PassphraseTest, NobodyIsAskedForPlainKeys)
+TEST_F(PassphraseTest, NobodyIsAskedForAPlainKey)
 {
-    FleetKeys(Place(), Answer("")).Add(RequestFor("uav1"), {.Now = TestNow, .Days = 365});
+    FleetAuthority(Place(), Answer("")).Add(RequestFor("uav1"), Year());
     EXPECT_THAT(_asked, ElementsAre());
 }
 
 TEST_F(PassphraseTest, NobodyIsAskedBeforeThatIsNeeded)
 {
-    EXPECT_THAT(FleetKeys(Closed(), Answer("")).Nodes(), ElementsAre());
+    EXPECT_THAT(FleetAuthority(Closed(), Answer("")).Nodes(), ElementsAre());
     EXPECT_THAT(_asked, ElementsAre());
 }
 
@@ -102,31 +102,49 @@ TEST_F(PassphraseTest, NothingOfASecretStaysInMemoryAfterItsEnd)
 TEST_F(PassphraseTest, NothingIsRevokedWithoutThePassphrase)
 {
     AddWith(Answer("open sesame"));
-    EXPECT_THAT(WhyNot([&] { FleetKeys(Closed(), Answer("no")).Revoke("uav1", TestNow); }),
+    EXPECT_THAT(WhyNot([&] { FleetAuthority(Closed(), Answer("no")).Revoke("uav1", Now); }),
                 HasSubstr("the passphrase does not open"));
     EXPECT_TRUE(IsMade());
+    EXPECT_EQ(FleetAuthority(Closed()).Epoch(), 1);
 }
 
-// As `openssl pkcs8 -topk8 -v2 aes-256-cbc` writes them.
-TEST_F(PassphraseTest, KeysThatOpenSslHasEncryptedAreOpened)
+// As `openssl pkcs8 -topk8 -v2 aes-256-cbc` writes it.
+TEST_F(PassphraseTest, AKeyThatOpenSslHasEncryptedIsOpened)
 {
-    const std::string file = Place() + "/authority/identity_key.pem";
+    const std::string file = Place() + "/authority/key";
     const KeyPtr key = ReadKey(ReadSecret(file), file);
     const BioPtr bio = EmptyBio();
     ASSERT_EQ(
         PEM_write_bio_PKCS8PrivateKey(bio.get(), key.get(), EVP_aes_256_cbc(), "abc", 3, nullptr, nullptr),
         1);
     WriteSecret(file, TextOf(*bio));
-    FleetKeys(Place(), Answer("abc")).Add(RequestFor("uav1"), {.Now = TestNow, .Days = 365});
-    EXPECT_EQ(NodeKeys(FolderOf("uav1")).WhyNot("uav1", "fastdds", 7, TestNow), "");
+    FleetAuthority(Place(), Answer("abc")).Add(RequestFor("uav1"), Year());
+    EXPECT_EQ(MemberFolder(FolderOf("uav1")).WhyNot("uav1"), "");
 }
 
 TEST_F(PassphraseTest, AnEncryptedKeyOfANodeIsRefused)
 {
     Add("uav1");
-    const std::string file = NodeFiles(FolderOf("uav1")).PrivateKey;
-    WriteSecret(file, PemOf(*ReadKey(ReadSecret(file), file), "abc"));
-    EXPECT_THAT(WhyNoKeys(FolderOf("uav1")), HasSubstr("private_key.pem is encrypted"));
+    const std::string file = MemberFiles(FolderOf("uav1")).Key;
+    const std::string plain = ReadSecret(file);
+    const std::string second = plain.substr(plain.find("-----BEGIN", 1));
+    WriteSecret(file, SigningKeyPem(MemberSecrets::Read(plain, file).Signing, "abc") + second);
+    EXPECT_THAT(WhyNoMember(FolderOf("uav1")), HasSubstr("/key is encrypted"));
+}
+
+// OpenSSL would ask for a passphrase at the terminal.
+TEST_F(PassphraseTest, NobodyIsAskedForThePassphraseOfFilesThatAreNotSecret)
+{
+    const auto closed = [](const std::string &kind)
+    {
+        return "-----BEGIN " + kind + "-----\nProc-Type: 4,ENCRYPTED\nDEK-Info: " +
+               "AES-256-CBC,00112233445566778899AABBCCDDEEFF\n\nAAAAAAAAAAAAAAAAAAAAAA==\n-----END " + kind +
+               "-----\n";
+    };
+    EXPECT_THAT(WhyNot([&] { ReadPublicKey(closed("PUBLIC KEY"), "a.pem"); }),
+                HasSubstr("a.pem is no public key"));
+    EXPECT_THAT(WhyNot([&] { ReadCertificate(closed("CERTIFICATE"), "c.pem"); }),
+                HasSubstr("bad password read"));
 }
 
 }  // namespace

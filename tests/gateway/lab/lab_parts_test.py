@@ -18,7 +18,7 @@ import yaml
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "gateway" / "lab"))
 # pylint: disable=wrong-import-position
 from rabit_lab import flight as flights  # noqa: E402
-from rabit_lab import junit, main, new, nodes, places, plots, real_time, report, scenario, table, tools, units, what_if  # noqa: E402
+from rabit_lab import junit, keys, main, new, nodes, places, plots, processes, real_time, report, scenario, table, tools, units, what_if  # noqa: E402
 from rabit_lab.marked import ScenarioError  # noqa: E402
 
 FLEET = """nodes:
@@ -92,6 +92,77 @@ class ScenarioTest(InFolder):
         for line, words, more in cases:
             with self.subTest(more):
                 self.refused(line, words, more)
+
+    KEYED = ("nodes:\n  uav*: {count: 2, command: [sh], keys: \"{node}.yaml\"}\n  ground: {command: [sh], keys: ground.yaml}\n"
+             "  plain1: {command: [sh]}\n  plain2: {command: [sh]}\n")
+
+    def read_keyed(self, more=""):
+        for name in ("uav1", "uav2", "ground"):
+            (self.folder / f"{name}.yaml").write_text("", encoding="utf-8")
+        return self.read(more, self.KEYED)
+
+    def test_nodes_with_keys_and_nodes_without_do_not_hear_each_other(self):
+        read = self.read_keyed()
+        self.assertEqual(read.nodes["uav2"].keys, str(self.folder.resolve() / "uav2.yaml"))
+        self.assertTrue(read.share_network("uav1", "ground"))
+        self.assertTrue(read.share_network("plain1", "plain2"))
+        self.assertFalse(read.share_network("uav1", "plain1"))
+
+    def test_a_node_that_can_have_no_keys_is_named(self):
+        for words, node in (("has an image", "image: debian, keys: s.yaml"), ("is no Rabit node", "command: [sh], plain: true, keys: s.yaml"),
+                            ("there is no file", "command: [sh], keys: none.yaml")):
+            with self.subTest(words):
+                self.refused(2, words, fleet=f"nodes:\n  uav: {{{node}}}\n")
+
+    def made_keys(self, read, code=0):
+        """What keys.make returns, and the calls of `rabit`."""
+        rabit = self.folder / "rabit"
+        rabit.write_text(f'#!/bin/sh\necho "$@" >>{self.folder}/calls\necho "rabit: no such type" >&2\nexit {code}\n', encoding="utf-8")
+        rabit.chmod(0o755)
+        made = keys.make(read, self.folder, str(rabit))
+        calls = self.folder / "calls"
+        return made, calls.read_text(encoding="utf-8").splitlines() if calls.exists() else []
+
+    def test_each_node_gets_keys_for_its_configuration_and_each_tool_some_of_its_own(self):
+        read = self.read_keyed("network:\n  radio: {}\nobserve: radio\nevents:\n  - {at: 1s, send: uav1/Q, type: A}\n"
+                               "  - {at: 2s, send: uav1/Q, type: A, options: [--node, ops]}\n"
+                               "  - {at: 3s, send: plain1/Q, type: A, from: plain2}\n")
+        made, calls = self.made_keys(read)
+        self.assertEqual(list(made), ["uav1", "uav2", "ground", "observer", "lab.send1", "ops"])
+        self.assertEqual(made["uav1"], self.folder / "keys" / "uav1")
+        self.assertEqual(calls[:2], [f"keys init {self.folder}/keys",
+                                     f"keys add uav1 --keys {self.folder}/keys --config {self.folder.resolve()}/uav1.yaml"])
+        self.assertEqual(calls[-1], f"keys add ops --keys {self.folder}/keys --tool")
+        self.assertEqual([keys.sender(read, event) for event in read.events], ["lab.send1", "ops", "lab.send3"])
+
+    def test_a_fleet_without_keys_gets_none(self):
+        self.assertEqual(self.made_keys(self.read("events:\n  - {at: 1s, send: uav1/Q, type: A}\n")), ({}, []))
+
+    def test_keys_that_cannot_be_made_are_a_mistake_of_the_scenario(self):
+        with self.assertRaises(ScenarioError) as caught:
+            self.made_keys(self.read_keyed(), 2)
+        self.assertEqual(str(caught.exception), f"{self.folder / 's.yaml'}:2: keys: no such type")
+
+    def test_a_node_learns_of_its_keys_by_the_environment(self):
+        read = self.read_keyed()
+        given = {}
+        spaces = types.SimpleNamespace(start=lambda place, argv, env: (given.update({place: env}), (argv, env))[1])
+        nets = types.SimpleNamespace(addresses=lambda place: ["10.77.0.1"], spaces=spaces)
+        with mock.patch("rabit_lab.processes.Process"):
+            started = nodes.Nodes(read, nets, flights.Flight(read), self.folder, None, lambda: 0.0, {"uav1": self.folder / "keys" / "uav1"})
+            started.start("uav1")
+            started.start("plain1")
+        self.assertEqual(given["uav1"]["RABIT_NODE_KEYS"], str(self.folder / "keys" / "uav1"))
+        self.assertNotIn("RABIT_NODE_KEYS", given["plain1"])
+
+    def test_the_keys_of_the_labs_user_reach_no_child(self):
+        def lines_of(env):
+            child = processes.Process(["env"], env)
+            self.assertEqual(child.exit_code(60), 0)
+            return [text for _, text in child.lines]
+        with mock.patch.dict("os.environ", {"RABIT_KEYS": "mine", "RABIT_NODE_KEYS": "mine", "RABIT_DOMAIN": "7"}):
+            self.assertEqual([line for line in lines_of(None) if line.startswith("RABIT_")], ["RABIT_DOMAIN=7"])
+            self.assertIn("RABIT_NODE_KEYS=of/the/node", lines_of({"RABIT_NODE_KEYS": "of/the/node"}))
 
     def test_an_autopilot_runs_beside_its_node_and_no_pattern_of_nodes_means_it(self):
         fleet = "nodes:\n  uav*: {count: 2, command: [sh, \"{mavlink}\"], autopilot: {kind: px4-sih, over: dds, options: [\"{node}\"]}}\n"
@@ -568,10 +639,11 @@ class ResultsTest(InFolder):
         (self.folder / "station").chmod(0o755)
         (self.folder / "station.yaml").write_text("node: station\npublish:\n  - {message: Wind, type: W}\n", encoding="utf-8")
         (self.folder / "sh").symlink_to("/bin/sh")
-        (self.folder / "sh.yaml").write_text("node: show\nsubscribe:\n  - {message: Wind, type: W}\n", encoding="utf-8")
+        (self.folder / "sh.yaml").write_text("node: show\nsecurity: {keys: /etc/keys}\nsubscribe:\n  - {message: Wind, type: W}\n", encoding="utf-8")
         new.write(self.folder, None)
         read = scenario.read(self.folder / "scenario.yaml")
-        self.assertEqual(sorted(read.nodes), ["show", "station"])
+        self.assertEqual({name: node.keys for name, node in read.nodes.items()},
+                         {"show": str(self.folder.resolve() / "sh.yaml"), "station": ""})
         self.assertIn("station/Wind at show: age p90 < 2s, before 20s", [expect.text for expect in read.expects])
 
 

@@ -17,7 +17,7 @@ LOOPBACK = ("<CycloneDDS><Domain><General><Interfaces><NetworkInterface address=
 STRING = "module std_msgs { module msg { @final struct String { string data; }; }; };"
 
 
-def make_keys(folder, network):
+def make_keys(folder):
     """Makes the keys of a fleet of two nodes, and of a node that another authority admits."""
     made = {}
     for fleet in ("own", "other"):
@@ -26,7 +26,7 @@ def make_keys(folder, network):
                 "ground": "subscribe:\n  - {message: Pose, type: Uav::Pose, from: [uav1]}\nsend:\n  - {to: uav1, queue: Commands}\n"}
     for name, fleet in (("uav1", "own"), ("ground", "own"), ("ground", "other")):
         config = folder / f"{name}.yaml"
-        config.write_text(f"node: {name}\ndomain: {network['domain']}\ntransport: {network['transport']}\n{sections[name]}")
+        config.write_text(f"node: {name}\n{sections[name]}")
         subprocess.run([TOOL, "keys", "add", name, "--config", config, "--keys", folder / fleet], check=True,
                        stdout=subprocess.DEVNULL)
         made[fleet, name] = {"keys": str(folder / fleet / name)}
@@ -35,8 +35,7 @@ def make_keys(folder, network):
 
 @pytest.mark.skipif(not TOOL.exists(), reason="the program rabit is not built")
 def test_nodes_with_keys_hear_their_fleet_alone(idl, network, tmp_path):
-    """Each in a process of its own: Cyclone DDS with keys can be in a domain once in a process."""
-    keys = make_keys(tmp_path, network)
+    keys = make_keys(tmp_path)
     ground = """
         with rabit.Node("ground", security=KEYS, **network) as node:
             poses = node.subscribe("uav1/Pose", idl.Uav.Pose)

@@ -178,49 +178,111 @@ TEST_F(NetworkChecks, DomainsThatWereOnlyListenedToAreNamedIfNoNodeWasFound)
     EXPECT_THAT(OfSilentDomains(config, facts, false, 10, 12.0), IsEmpty());
 }
 
-TEST_F(NetworkChecks, NodesWithKeysAreAProblemForWhoHasNone)
+TEST_F(NetworkChecks, NodesWithKeysAreAProblemForAProgramWithoutKeys)
 {
     config.Domain = 7;
-    facts.Domains[7]["10.0.0.3"] = {{"plain", "uav2", "uav10"}, true, {"uav2", "uav10"}};
-    facts.Domains[8]["10.0.0.3"] = {{"uav3"}, true, {"uav3"}};
-    const auto findings = OfKeys(config, facts, {});
+    facts.Domains[7]["10.0.0.3"] = {{"plain"}, true, {1}};
+    facts.Domains[7]["10.0.0.20"] = {{}, false, {2, 3}};
+    facts.Domains[8]["10.0.0.4"] = {{}, false, {4}};
+    const auto findings = OfKeys(config, used, facts, true);
     ASSERT_THAT(findings, SizeIs(1));
     EXPECT_EQ(findings[0].How, Level::Problem);
-    EXPECT_EQ(findings[0].Text, "uav2, uav10 in domain 7 have keys, and this program has none: it stays out");
+    EXPECT_EQ(findings[0].Text,
+              "nodes at 10.0.0.3, 10.0.0.20 in domain 7 have keys, and this program has none: it stays out");
     EXPECT_THAT(findings[0].Advice, HasSubstr("--keys FOLDER"));
 }
 
-TEST_F(NetworkChecks, ThatNobodyLetsOneInWhoHasKeysIsAProblemAndOneWithoutKeysANote)
+TEST_F(NetworkChecks, ThatNoneIsHeardWithTheKeysOfThisProgramIsAProblem)
 {
     config.Domain = 7;
     config.Security.emplace();
-    facts.Domains[7]["10.0.0.3"] = {{"plain", "uav1"}, true, {"uav1"}, {"uav1"}};
-    const auto lonely = OfKeys(config, facts, {});
-    ASSERT_THAT(lonely, SizeIs(2));
+    // The first session is of this program.
+    facts.Domains[7]["10.0.0.2"] = {{}, false, {1}};
+    EXPECT_THAT(OfKeys(config, used, facts, false), IsEmpty());
+    facts.Domains[7]["10.0.0.3"] = {{}, false, {2}};
+    const auto lonely = OfKeys(config, used, facts, false);
+    ASSERT_THAT(lonely, SizeIs(1));
     EXPECT_EQ(lonely[0].How, Level::Problem);
-    EXPECT_EQ(lonely[0].Text, "uav1 in domain 7 has keys, and does not let this program in");
-    const auto well = OfKeys(config, facts, {"uav1"});
-    ASSERT_THAT(well, SizeIs(1));
-    EXPECT_EQ(well[0].How, Level::Note);
-    EXPECT_EQ(well[0].Text, "plain in domain 7 has no keys: what it says is not heard");
+    // The address of this machine is left out.
+    EXPECT_EQ(lonely[0].Text,
+              "nodes at 10.0.0.3 in domain 7 have keys, and none is heard with the keys of this program");
+    EXPECT_THAT(OfKeys(config, used, facts, true), IsEmpty());
+    facts.Domains[7].erase("10.0.0.3");
+    facts.Domains[7]["10.0.0.2"].SealedSessions.insert(2);
+    EXPECT_THAT(OfKeys(config, used, facts, false).at(0).Text, HasSubstr("nodes at 10.0.0.2 in domain 7"));
+}
+
+TEST_F(NetworkChecks, KeysOfOnePathAreKeysOfThisProgram)
+{
+    PathRule mesh{.Name = "mesh"};
+    mesh.Security.emplace();
+    config.Paths = {mesh, {.Name = "modem"}};
+    EXPECT_EQ(OwnSealedSessions(config), 1U);
+    facts.Domains[config.Domain]["10.0.0.3"] = {{"plain"}, false, {1}};
+    const auto findings = OfKeys(config, used, facts, false);
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_THAT(findings[0].Text, HasSubstr("plain in domain 0 has no keys"));
+}
+
+TEST_F(NetworkChecks, ASessionOfThisProgramIsNoNodeThatWasFound)
+{
+    config.Security.emplace();
+    facts.Domains[config.Domain]["10.0.0.2"] = {{}, false, {1}};
+    EXPECT_THAT(OfSilentDomains(config, facts, false, 10, 12.0), SizeIs(1));
+    facts.Domains[3]["10.0.0.3"] = {{}, false, {2}};
+    EXPECT_THAT(OfSilentDomains(config, facts, false, 10, 12.0), IsEmpty());
+}
+
+TEST_F(NetworkChecks, ANodeIsHeardIfItHasNoKeysOrIfMoreSessionsHaveKeysThanThoseOfThisProgram)
+{
+    EXPECT_FALSE(IsNodeHeard(facts, 7, 0));
+    facts.Domains[7]["10.0.0.4"] = {{"a program of ROS 2"}, false};
+    facts.Domains[8]["10.0.0.4"] = {{"uav1"}, true};
+    EXPECT_FALSE(IsNodeHeard(facts, 7, 0));
+    // A session that is heard at two addresses counts once.
+    facts.Domains[7]["10.0.0.2"].SealedSessions = {1};
+    facts.Domains[7]["127.0.0.1"].SealedSessions = {1};
+    EXPECT_FALSE(IsNodeHeard(facts, 7, 1));
+    EXPECT_TRUE(IsNodeHeard(facts, 7, 0));
+    facts.Domains[7]["10.0.0.3"].SealedSessions = {2};
+    EXPECT_TRUE(IsNodeHeard(facts, 7, 1));
+    facts.Domains[7]["10.0.0.5"] = {{"uav1"}, true};
+    EXPECT_TRUE(IsNodeHeard(facts, 7, 9));
+}
+
+TEST_F(NetworkChecks, AProgramWithoutKeysIsANoteForOneWithKeys)
+{
+    config.Security.emplace();
+    facts.Domains[config.Domain]["10.0.0.3"] = {{"plain"}, false, {1}};
+    const auto findings = OfKeys(config, used, facts, true);
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].How, Level::Note);
+    EXPECT_EQ(findings[0].Text, "plain in domain 0 has no keys: what it says is not heard");
 }
 
 TEST_F(NetworkChecks, KeysAreNoMatterWhereNobodyHasSome)
 {
     facts.Domains[config.Domain]["10.0.0.3"] = {{"uav1"}, true};
-    EXPECT_THAT(OfKeys(config, facts, {"uav1"}), IsEmpty());
-    EXPECT_THAT(OfKeys(config, facts, {}), IsEmpty());
+    EXPECT_THAT(OfKeys(config, used, facts, true), IsEmpty());
+    EXPECT_THAT(OfKeys(config, used, facts, false), IsEmpty());
 }
 
-TEST_F(NetworkChecks, ANodeThatDoesNotLetThisProgramInIsAProblemBesideOthersThatDo)
+TEST_F(NetworkChecks, NodesWithKeysInAnotherDomainAreAProblemIfNobodyIsInOurs)
 {
-    config.Security.emplace();
-    facts.Domains[config.Domain]["10.0.0.3"] = {
-        {"plain", "uav1", "uav2"}, true, {"plain", "uav1", "uav2"}, {"uav1", "uav2"}};
-    const auto findings = OfKeys(config, facts, {"uav1"});
+    facts.Domains[8]["10.0.0.4"] = {{}, false, {1}};
+    const auto findings = OfDomains(config, facts, false);
     ASSERT_THAT(findings, SizeIs(1));
     EXPECT_EQ(findings[0].How, Level::Problem);
-    EXPECT_EQ(findings[0].Text, "uav2 in domain 0 has keys, and does not let this program in");
+    EXPECT_THAT(findings[0].Text, HasSubstr("a node with keys is in it, at 10.0.0.4"));
+}
+
+TEST_F(NetworkChecks, WithKeysNoAnswerOfProgramsWithoutKeysIsMissed)
+{
+    config.Security.emplace();
+    Trial().HeardFrom.clear();
+    Trial().AnsweredFrom.clear();
+    EXPECT_EQ(Multicast().How, Level::Good);
+    EXPECT_EQ(Multicast().Text, "it goes out; nobody without keys answered");
 }
 
 TEST_F(NetworkChecks, ProgramsThatAreNoNodesAreNeverAProblem)

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "common/ParticipantIdentity.h"
+#include "envelope/Outer.h"
 
 namespace Rabit::Tool::Doctor
 {
@@ -51,7 +52,7 @@ TEST(RtpsCall, IsHeardAsAnAnnouncement)
     EXPECT_EQ(heard->Port, 7411);
 }
 
-TEST(RtpsCall, AParticipantThatSaysThatItIsGoneLeaves)
+TEST(RtpsCall, AParticipantThatSaysThatItIsGoneAnnouncesNothing)
 {
     // INFO_DST is not needed: a header and a DATA of the participant writer with PID_STATUS_INFO alone.
     std::vector<std::uint8_t> goodbye = MakeCall(Id, {10, 0, 0, 2}, 7411);
@@ -64,7 +65,6 @@ TEST(RtpsCall, AParticipantThatSaysThatItIsGoneLeaves)
     const auto heard = HeardIn(goodbye);
     ASSERT_TRUE(heard);
     EXPECT_EQ(heard->Sender, Id);
-    EXPECT_TRUE(heard->Leaves);
     EXPECT_FALSE(heard->Announces);
 }
 
@@ -102,17 +102,28 @@ TEST(RtpsCall, ANameIsTheLabelAndANamelessProgramHasItsPrefix)
     EXPECT_EQ(LabelOf(*HeardIn(CallWith({}))), "a program without a name (0102030405060708090a0b0c)");
 }
 
-TEST(RtpsCall, TellsOneThatHasKeys)
+TEST(RtpsCall, TellsSessionsWithKeysFromOneAnother)
 {
-    auto parameters = Parameter(0x62, "uav1");
-    EXPECT_FALSE(HeardIn(CallWith(parameters))->HasKeys);
-    auto token = Parameter(0x01, "DDS:Auth:PKI-DH:1.0");
-    token[1] = 0x10;
-    parameters.insert(parameters.end(), token.begin(), token.end());
-    const auto heard = HeardIn(CallWith(parameters));
-    ASSERT_TRUE(heard);
-    EXPECT_EQ(heard->Name, "uav1");
-    EXPECT_TRUE(heard->HasKeys);
+    Envelope::Outer outer{.Kind = Envelope::OuterKind::Pairwise, .Epoch = 3, .Tag = 0x01020304};
+    std::vector<std::uint8_t> datagram(100);
+    Envelope::WriteOuter(outer, datagram);
+    EXPECT_EQ(SealedTagIn(datagram), 0x01020304U);
+    outer.Tag = 5;
+    Envelope::WriteOuter(outer, datagram);
+    EXPECT_EQ(SealedTagIn(datagram), 5U);
+    EXPECT_FALSE(HeardIn(datagram));
+    EXPECT_FALSE(SealedTagIn(MakeCall(Id, {10, 0, 0, 2}, 7411)));
+    EXPECT_FALSE(SealedTagIn({}));
+}
+
+TEST(RtpsCall, ASealedCallIsWhatASessionWithKeysCouldSendAndIsNotTakenForOne)
+{
+    const std::vector<std::uint8_t> call = MakeSealedCall();
+    Envelope::Outer outer;
+    EXPECT_EQ(Envelope::ReadOuter(call, outer), Envelope::OuterFault::None);
+    EXPECT_EQ(outer.Epoch, Envelope::EpochOfCalls);
+    EXPECT_FALSE(SealedTagIn(call));
+    EXPECT_LE(call.size(), 100U);
 }
 
 TEST(RtpsCall, ANameCannotCommandATerminal)

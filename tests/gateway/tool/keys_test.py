@@ -82,26 +82,29 @@ class Shell:
 
 
 def a_fleet_is_made_in_two_commands(shell):
-    assert shell.good("init").startswith("keys: fleet `fleet`, valid until ")
+    assert shell.good("init") == "keys: a new fleet\n"
     lines = shell.good("add", "uav1", "--config", "uav1.yaml").splitlines()
     assert lines[0].startswith("keys/uav1: valid until "), lines
     assert [line.strip() for line in lines[1:]] == [
-        "in domain 7", "writes rabit/Beat, rabit/Link", "writes Pose", "reads rabit/Beat, rabit/Link",
-        "reads Pose of uav*"], lines
-    key = shell.folder / "keys" / "uav1" / "private_key.pem"
-    assert stat.S_IMODE(key.stat().st_mode) == 0o600
+        "writes rabit/Beat, rabit/Link, Pose", "reads rabit/Beat, rabit/Link, Pose"], lines
+    folder = shell.folder / "keys" / "uav1"
+    assert sorted(file.name for file in folder.iterdir()) == ["authority", "bulletin", "certificate", "key", "permissions"]
+    assert stat.S_IMODE((folder / "key").stat().st_mode) == 0o600
+    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
 
 
 def what_is_there_is_not_made_again(shell):
     shell.fleet()
-    assert shell("init").returncode == 1
-    assert shell("add", "uav1", "--config", "uav1.yaml").returncode == 1
+    for words in (["init"], ["add", "uav1", "--config", "uav1.yaml"]):
+        done = shell(*words)
+        assert done.returncode == 1 and "already" in done.stderr, done
 
 
 def wrong_usage_is_2(shell):
     shell.good("init")
-    for words in ([], ["add"], ["add", "uav1"], ["add", "uav1", "--config", "none.yaml"], ["revoke"], ["init", "--days", "0"],
-                  ["request"], ["sign"], ["sign", "x.pem"],
+    for words in ([], ["add"], ["add", "uav1"], ["add", "uav1", "--config", "none.yaml"], ["revoke"],
+                  ["add", "uav1", "--tool", "--days", "0"], ["request"], ["sign"], ["sign", "x.pem"],
+                  ["init", "other", "--name", "fleet"], ["add", "uav1", "--tool", "--domain", "7"],
                   ["add", "uav1", "--tool", "--config", "uav1.yaml"]):
         assert shell(*words).returncode == 2, words
 
@@ -117,7 +120,7 @@ def a_configuration_that_has_changed_is_a_problem_until_it_is_renewed(shell):
     (shell.folder / "uav1.yaml").write_text(CONFIG.replace("{message: Pose, type: Uav::Pose, qos", "{message: Photo, type: Uav::Pose, qos"))
     done = shell("check", "--config", "uav1.yaml")
     assert done.returncode == 1
-    assert "problem: may not write Photo of uav1" in done.stdout, done
+    assert "problem: may not write Photo, which uav1.yaml wants" in done.stdout, done
     assert "problem: may write Pose, which uav1.yaml does not want" in done.stdout, done
     shell.good("renew", "uav1", "--config", "uav1.yaml")
     shell.good("check", "--config", "uav1.yaml")
@@ -139,27 +142,27 @@ def what_ends_soon_is_a_problem(shell):
 
 def a_key_that_others_may_read_is_a_problem(shell):
     shell.fleet()
-    (shell.folder / "keys" / "uav1" / "private_key.pem").chmod(0o644)
+    (shell.folder / "keys" / "uav1" / "key").chmod(0o644)
     done = shell("check")
     assert done.returncode == 1 and "not for its owner alone (mode 644)" in done.stdout, done
 
 
 def json_is_an_object_for_each_node(shell):
     shell.fleet()
-    shell.good("add", "laptop", "--tool", "--domain", "7")
+    shell.good("add", "laptop", "--tool")
     objects = [json.loads(line) for line in shell.good("check", "--json").splitlines()]
     assert [one["node"] for one in objects] == ["laptop", "uav1"]
     assert list(objects[0]) == ["node", "folder", "until", "may", "problems", "notes"]
-    assert "reads everything of everybody" in objects[0]["may"]
+    assert objects[0]["may"] == ["writes rabit/Beat, rabit/Link", "reads everything"], objects
+    assert all(not one["problems"] for one in objects), objects
 
 
 def json_is_an_object_for_each_thing_that_was_done(shell):
     def objects(*words):
         return [json.loads(line) for line in shell.good(*words, "--json").splitlines()]
-    (made,) = objects("init")
-    assert made["folder"] == "keys" and made["fleet"] == "fleet" and list(made) == ["folder", "fleet", "until", "encrypted"], made
+    assert objects("init") == [{"folder": "keys", "encrypted": False}]
     (added,) = objects("add", "uav1", "--config", "uav1.yaml")
-    assert list(added) == ["node", "folder", "until", "may"] and "writes Pose" in added["may"], added
+    assert list(added) == ["node", "folder", "until", "may"] and "Pose" in added["may"][0], added
     (renewed,) = objects("renew", "uav1", "--revoke-old")
     assert list(renewed) == ["node", "folder", "until", "may", "revoked"] and renewed["revoked"] == 1, renewed
     assert objects("revoke", "uav1") == [{"node": "uav1", "revoked": 1}]
@@ -176,28 +179,21 @@ def who_is_revoked_is_gone(shell):
 def a_revocation_tells_what_is_removed_and_what_to_copy(shell):
     shell.fleet()
     shell.good("add", "laptop", "--tool")
-    told = shell("revoke", "laptop").stderr
-    assert "the folder keys/laptop is removed" in told and "keys/uav1/revoked.pem" in told, told
+    done = shell("revoke", "laptop")
+    assert done.stdout == "laptop: 1 certificate is revoked\n", done
+    assert "the folder keys/laptop is removed" in done.stderr, done
+    assert sum("copy keys/authority/bulletin into the folder of keys of any one node" in line for line in done.stderr.splitlines()) == 1, done
 
 
-def a_tool_is_in_the_domain_of_the_fleet(shell):
-    shell.good("init")
-    done = shell("add", "laptop", "--tool")
-    assert done.returncode == 1 and "--domain" in done.stderr, done
-    shell.good("add", "uav1", "--config", "uav1.yaml")
-    done = shell("add", "laptop", "--tool")
-    assert done.returncode == 0 and "  in domain 7\n" in done.stdout and "in domain 7" in done.stderr, done
-    shell.good("add", "other", "--tool", "--domain", "8")
-    done = shell("add", "third", "--tool")
-    assert done.returncode == 1 and "several domains" in done.stderr, done
-
-
-def a_node_in_another_domain_than_the_others_is_noted(shell):
+def a_node_that_lacks_the_newest_bulletin_is_a_problem(shell):
     shell.fleet()
     shell.good("add", "laptop", "--tool")
-    assert "note: most nodes" not in shell.good("check")
-    shell.good("add", "other", "--tool", "--domain", "8")
-    assert shell.good("check").count("note: most nodes are in domain 7\n") == 1
+    bulletin = shell.folder / "keys" / "uav1" / "bulletin"
+    before = bulletin.read_bytes()
+    shell.good("revoke", "laptop")
+    bulletin.write_bytes(before)
+    done = shell("check")
+    assert done.returncode == 1 and "its bulletin is of epoch 1, and the fleet is in epoch 2" in done.stdout, done
 
 
 def a_node_keeps_its_private_key(shell):
@@ -232,8 +228,16 @@ def a_bad_request_leaves_all_unsigned(shell):
     shell.good("init")
     (shell.folder / "bad.pem").write_text("bad")
     done = shell("sign", shell.request("uav1", "uav1"), "bad.pem", "--config", "uav1.yaml")
-    assert done.returncode == 1 and "bad.pem is no request of a node" in done.stderr, done
+    assert done.returncode == 1 and "bad.pem" in done.stderr and len(done.stderr.splitlines()) == 1, done
     assert not (shell.folder / "keys" / "uav1").exists()
+
+
+def a_request_of_a_node_that_has_keys_leaves_all_unsigned(shell):
+    shell.fleet()
+    files = [shell.request(node, f"{node}_there") for node in ("uav2", "uav1")]
+    done = shell("sign", *files, "--config", "uav1.yaml")
+    assert done.returncode == 1 and "keys/uav1 is there already" in done.stderr and done.stdout == "", done
+    assert not (shell.folder / "keys" / "uav2").exists()
 
 
 def a_request_does_not_replace_a_node(shell):
@@ -241,7 +245,7 @@ def a_request_does_not_replace_a_node(shell):
     request = shell.request("uav1", "there")
     assert "there already" in shell("sign", request, "--config", "uav1.yaml").stderr
     assert "valid until" in shell.good("renew", "uav1", "--request", request)
-    assert not (shell.folder / "keys" / "uav1" / "private_key.pem").exists()
+    assert not (shell.folder / "keys" / "uav1" / "key").exists()
     assert shell("renew", "uav1", "uav2", "--request", request).returncode == 2
 
 
@@ -285,113 +289,27 @@ def without_a_passphrase_one_line_says_how_to_give_it(shell):
     assert done.returncode == 1 and "(mode 644)" in done.stderr, done
 
 
-def a_sealed_fleet(shell):
-    shell.good("init", "--sealed")
-    shell.good("add", "uav1", "--config", "uav1.yaml")
-
-
-def a_sealed_fleet_is_made_in_two_commands(shell):
-    assert shell.good("init", "--sealed") == "keys: a new fleet\n"
-    lines = shell.good("add", "uav1", "--config", "uav1.yaml").splitlines()
-    assert lines[0].startswith("keys/uav1: valid until "), lines
-    assert [line.strip() for line in lines[1:]] == [
-        "writes rabit/Beat, rabit/Link, Pose", "reads rabit/Beat, rabit/Link, Pose"], lines
-    folder = shell.folder / "keys" / "uav1"
-    assert sorted(file.name for file in folder.iterdir()) == ["authority", "bulletin", "certificate", "key", "permissions"]
-    assert stat.S_IMODE((folder / "key").stat().st_mode) == 0o600
-
-
-def a_sealed_fleet_is_not_made_again(shell):
-    a_sealed_fleet(shell)
-    for words in (["init"], ["init", "--sealed"], ["add", "uav1", "--config", "uav1.yaml"]):
-        done = shell(*words)
-        assert done.returncode == 1 and "already" in done.stderr, done
-    for words in (["init", "--sealed", "--name", "x"], ["init", "--sealed", "--days", "9"]):
-        assert shell(*words).returncode == 2, words
-
-
-def a_sealed_check_compares_with_the_configuration(shell):
-    a_sealed_fleet(shell)
-    shell.good("check", "--config", "uav1.yaml")
-    shell.good("check", "keys/uav1")
-    (shell.folder / "uav1.yaml").write_text(CONFIG.replace("{message: Pose, type: Uav::Pose, qos", "{message: Photo, type: Uav::Pose, qos"))
-    done = shell("check", "--config", "uav1.yaml")
-    assert done.returncode == 1 and "problem: may not write Photo, which uav1.yaml wants" in done.stdout, done
-    assert "problem: may write Pose, which uav1.yaml does not want" in done.stdout, done
-    shell.good("renew", "uav1", "--config", "uav1.yaml")
-    shell.good("check", "--config", "uav1.yaml")
-
-
-def a_sealed_node_keeps_its_private_key(shell):
-    shell.good("init", "--sealed")
-    key = shell.good("request", "uav1", "--to", "there", "--sealed").split()[-1]
-    lines = shell.good("sign", "there/uav1.request.pem", "--config", "uav1.yaml").splitlines()
-    assert lines[-1].split() == ["key", key], lines
-    signed = shell.folder / "keys" / "uav1"
-    assert not any("PRIVATE KEY" in file.read_text() for file in signed.iterdir())
-    assert shell("check", "there").returncode == 1
-    assert "note: its private key is on the node alone" in shell.good("check", "keys/uav1")
-    for file in signed.iterdir():
-        (shell.folder / "there" / file.name).write_bytes(file.read_bytes())
-    shell.good("check", "there", "--config", "uav1.yaml")
-
-
-def a_request_of_the_other_format_is_one_line(shell):
-    a_sealed_fleet(shell)
-    done = shell("sign", shell.request("uav2", "there"), "--config", "uav1.yaml")
-    assert done.returncode == 1 and len(done.stderr.splitlines()) == 1 and "uav2.request.pem" in done.stderr, done
-
-
-def a_sealed_revocation_tells_how_it_reaches_the_fleet(shell):
-    a_sealed_fleet(shell)
-    shell.good("add", "laptop", "--tool")
-    done = shell("revoke", "laptop")
-    assert done.stdout == "laptop: 1 certificate is revoked\n", done
-    assert "the folder keys/laptop is removed" in done.stderr, done
-    assert sum("copy keys/authority/bulletin into the folder of any one node" in line for line in done.stderr.splitlines()) == 1, done
-    assert "laptop: revoked\n" in shell.good("check")
-    assert shell("renew", "laptop").returncode == 1
-
-
-def a_sealed_certificate_that_keeps_its_key_is_not_revoked(shell):
-    shell.good("init", "--sealed")
-    shell.good("request", "uav1", "--to", "there", "--sealed")
-    shell.good("sign", "there/uav1.request.pem", "--config", "uav1.yaml")
+def a_certificate_that_keeps_its_key_is_not_revoked(shell):
+    shell.good("init")
+    shell.good("sign", shell.request("uav1", "there"), "--config", "uav1.yaml")
     done = shell("renew", "uav1", "--revoke-old")
     assert done.returncode == 1 and "keeps its key" in done.stderr, done
 
 
-def json_of_a_sealed_fleet_is_an_object_for_each_thing(shell):
-    def objects(*words):
-        return [json.loads(line) for line in shell.good(*words, "--json").splitlines()]
-    assert objects("init", "--sealed") == [{"folder": "keys", "encrypted": False}]
-    (added,) = objects("add", "uav1", "--config", "uav1.yaml")
-    assert list(added) == ["node", "folder", "until", "may"], added
-    (renewed,) = objects("renew", "uav1", "--revoke-old")
-    assert renewed["revoked"] == 1, renewed
-    objects("add", "laptop", "--tool")
-    told = objects("check")
-    assert [one["node"] for one in told] == ["laptop", "uav1"] and "reads everything" in told[0]["may"][1], told
-    assert all(not one["problems"] for one in told), told
-    assert objects("revoke", "uav1") == [{"node": "uav1", "revoked": 1}]
-
-
-def a_sealed_authority_asks_for_its_passphrase(shell):
-    assert "encrypted" in shell.good("init", "--sealed", "--passphrase-file", shell.secret("word", "open sesame\n"))
-    shell.good("add", "uav1", "--config", "uav1.yaml", "--passphrase-file", "word")
-    shell.good("check")
-    done = shell("add", "uav2", "--config", "uav1.yaml", "--passphrase-file", shell.secret("other", "wrong\n"))
-    assert done.returncode == 1 and "the passphrase does not open keys/authority/key" in done.stderr, done
-
-
-def keys_of_the_former_format_are_named(shell):
-    shell.fleet()
-    for folder in ("keys", "keys/uav1"):
-        assert "rabit keys init --sealed" in shell("check", folder).stderr
-    a_fleet = shell.folder / "keys"
-    a_fleet.rename(shell.folder / "former")
-    a_sealed_fleet(shell)
-    assert "former format" not in shell("check").stderr
+def keys_of_the_former_format_are_refused_in_one_line(shell):
+    for file in ("old/authority/identity.pem", "old/uav1/certificate.pem"):
+        (shell.folder / file).parent.mkdir(parents=True)
+        (shell.folder / file).write_text("X.509")
+    for words in (["check", "old"], ["check", "old/uav1"], ["init", "old"], ["add", "uav2", "--tool", "--keys", "old"],
+                  ["add", "uav2", "--tool", "--keys", "old/uav1"], ["renew", "uav1", "--keys", "old"], ["revoke", "uav1", "--keys", "old"],
+                  ["request", "uav1", "--to", "old/uav1"]):
+        done = shell(*words)
+        assert done.returncode == 1 and len(done.stderr.splitlines()) == 1 and done.stdout == "", (words, done)
+        assert "`rabit keys init`" in done.stderr and "`rabit keys add`" in done.stderr, (words, done)
+    (shell.folder / "old.request.pem").write_text("-----BEGIN CERTIFICATE REQUEST-----\nMIH4\n-----END CERTIFICATE REQUEST-----\n")
+    done = shell("sign", "old.request.pem", "--tool")
+    assert done.returncode == 1 and len(done.stderr.splitlines()) == 1, done
+    assert "old.request.pem is a request of a former format" in done.stderr and "`rabit keys request`" in done.stderr, done
 
 
 def main():
@@ -400,18 +318,13 @@ def main():
              a_check_tells_whether_all_is_good, a_configuration_that_has_changed_is_a_problem_until_it_is_renewed,
              a_node_without_keys_is_a_problem, what_ends_soon_is_a_problem, a_key_that_others_may_read_is_a_problem,
              json_is_an_object_for_each_node, json_is_an_object_for_each_thing_that_was_done, who_is_revoked_is_gone,
-             a_revocation_tells_what_is_removed_and_what_to_copy, a_tool_is_in_the_domain_of_the_fleet,
-             a_node_in_another_domain_than_the_others_is_noted,
+             a_revocation_tells_what_is_removed_and_what_to_copy, a_node_that_lacks_the_newest_bulletin_is_a_problem,
              a_node_keeps_its_private_key, a_check_of_the_fleet_needs_no_private_key,
              requests_of_several_nodes_are_signed_together, a_bad_request_leaves_all_unsigned,
-             a_request_does_not_replace_a_node, a_passphrase_comes_from_a_file_a_pipe_or_the_environment,
+             a_request_of_a_node_that_has_keys_leaves_all_unsigned, a_request_does_not_replace_a_node, a_passphrase_comes_from_a_file_a_pipe_or_the_environment,
              a_passphrase_is_typed_unseen, two_new_passphrases_that_differ_make_no_fleet,
-             without_a_passphrase_one_line_says_how_to_give_it,
-             a_sealed_fleet_is_made_in_two_commands, a_sealed_fleet_is_not_made_again,
-             a_sealed_check_compares_with_the_configuration, a_sealed_node_keeps_its_private_key,
-             a_request_of_the_other_format_is_one_line, a_sealed_revocation_tells_how_it_reaches_the_fleet,
-             a_sealed_certificate_that_keeps_its_key_is_not_revoked, json_of_a_sealed_fleet_is_an_object_for_each_thing,
-             a_sealed_authority_asks_for_its_passphrase, keys_of_the_former_format_are_named]
+             without_a_passphrase_one_line_says_how_to_give_it, a_certificate_that_keeps_its_key_is_not_revoked,
+             keys_of_the_former_format_are_refused_in_one_line]
     failed = 0
     for test in tests:
         with tempfile.TemporaryDirectory() as folder:

@@ -35,16 +35,19 @@ class Fleet:
     def make(self, name):
         self.keys("init", self.folder / name)
 
-    def add(self, fleet, node, transport, *words):
-        self.keys("add", node, "--keys", self.folder / fleet, "--transport", transport, "--domain", self.domain, *words)
+    def add(self, fleet, node, *words):
+        self.keys("add", node, "--keys", self.folder / fleet, *words)
         return str(self.folder / fleet / node)
 
-    def tool(self, fleet, *words):
-        return self.add(fleet, f"laptop{next(self._tools)}-{self.transport}", self.transport, "--tool", *words)
+    def tool(self, fleet):
+        return self.add(fleet, f"laptop{next(self._tools)}-{self.transport}", "--tool")
 
-    def run(self, command, *arguments):
+    def run_anywhere(self, command, *arguments):
         return subprocess.run([self.program, command, *map(str, arguments), "--interface", "127.0.0.1"],
                               capture_output=True, text=True, timeout=LIMIT, check=False)
+
+    def run(self, command, *arguments):
+        return self.run_anywhere(command, *arguments, "--domain", self.domain, "--transport", self.transport)
 
 
 def a_tool_with_keys_sees_and_sends(fleet):
@@ -55,12 +58,8 @@ def a_tool_with_keys_sees_and_sends(fleet):
         rows = {row["node"]: row["state"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
         return is_well(done) and rows == {"uav1": "UP", "uav2": "UP"}
     harness.until(both)
-    for number in range(1, 6):
-        done = fleet.run("nodes", "--keys", keys, "--json")
-        rows = {row["node"] for row in map(json.loads, done.stdout.splitlines()) if "state" in row}
-        assert rows == {"uav1", "uav2"} or not is_well(done), (number, "a short list is not marked as such", done)
     for node in ("uav1", "uav2"):
-        # A handshake may take longer than --wait, so the command is repeated, as a person would.
+        # Nodes may meet later than --wait ends, so the command is repeated, as a person would.
         def echoed(node=node):
             done = fleet.run("echo", f"{node}/Pose", "--keys", keys, "--once", "--json", "--wait", "60")
             return done.returncode == 0 and "latitude_deg" in json.loads(done.stdout)["value"]
@@ -84,7 +83,7 @@ def a_configuration_names_keys_as_well(fleet):
     config.write_text(f"domain: {fleet.domain}\ntransport: {fleet.transport}\nsecurity: {{keys: {keys}}}\n")
 
     def echoed():
-        done = fleet.run("echo", "uav1/Pose", "--config", config, "--once", "--wait", "60")
+        done = fleet.run_anywhere("echo", "uav1/Pose", "--config", config, "--once", "--wait", "60")
         return done.returncode == 0 and "latitude_deg" in done.stdout
     harness.until(echoed)
 
@@ -98,48 +97,47 @@ def a_doctor_with_keys_finds_the_fleet_and_one_without_says_that_it_has_some(fle
     harness.until(well)
 
     def told():
-        done = fleet.run("doctor", "--domain", fleet.domain, "--transport", fleet.transport, "--json")
+        done = fleet.run("doctor", "--json")
         found = {row["subject"]: row for row in map(json.loads, done.stdout.splitlines())}
         assert done.returncode == 3, done
         return "keys" in found and found["keys"]["level"] == "problem" and found["keys"]["text"].startswith(
-            f"uav1, uav2 in domain {fleet.domain} have keys, and this program has none")
+            f"nodes at 127.0.0.1 in domain {fleet.domain} have keys, and this program has none")
     harness.until(told)
 
 
 def a_tool_without_keys_says_that_the_fleet_has_some(fleet):
     for command in (["nodes"], ["echo", "uav1/Pose"], ["send", "uav1/MissionControl", "Uav::GoHome", "{}"]):
         def told(command=command):
-            done = fleet.run(*command, "--domain", fleet.domain, "--transport", fleet.transport, "--wait", "2")
+            done = fleet.run(*command, "--wait", "2")
             assert done.returncode == 3 and done.stdout == "" and "nobody was heard" in done.stderr, done
-            return "keys, and this program has none" in done.stderr and "--keys FOLDER" in done.stderr
+            return "have keys, and this program has none" in done.stderr and "--keys FOLDER" in done.stderr
         harness.until(told)
 
 
-def a_tool_with_keys_of_another_fleet_says_that_it_is_not_let_in(fleet):
+def a_tool_with_keys_of_another_fleet_says_that_the_keys_fit_nobody(fleet):
     keys = fleet.tool("other")
 
     def told():
         done = fleet.run("nodes", "--keys", keys, "--wait", "4")
         assert done.returncode == 3, done
-        return "not let this program in" in done.stderr
+        return "none is heard with the keys of this program" in done.stderr
     harness.until(told)
 
 
 def what_is_wrong_with_keys_is_one_line(fleet):
     node = str(fleet.folder / "fleet" / "uav1")
     for keys, expected in ((fleet.folder / "nowhere", "there is no folder of keys"),
+                           (fleet.folder / "fleet", "is the folder of a fleet; name the folder of one node in it"),
                            (fleet.folder / "fleet" / "authority", "authority/"),
                            (node, "a tool needs keys of its own: `rabit keys add <name> --tool`")):
         done = fleet.run("nodes", "--keys", keys, "--wait", "2")
         assert done.returncode in (1, 2, 3) and expected in done.stderr, done
         assert len(done.stderr.splitlines()) == 1 and done.stdout == "", done
-    done = fleet.run("nodes", "--keys", fleet.tool("fleet"), "--domain", fleet.domain + 1)
-    assert done.returncode != 0 and f"permissions.p7s is not for domain {fleet.domain + 1}" in done.stderr, done
 
 
 TESTS = [a_tool_with_keys_sees_and_sends, a_configuration_names_keys_as_well,
          a_doctor_with_keys_finds_the_fleet_and_one_without_says_that_it_has_some,
-         a_tool_without_keys_says_that_the_fleet_has_some, a_tool_with_keys_of_another_fleet_says_that_it_is_not_let_in,
+         a_tool_without_keys_says_that_the_fleet_has_some, a_tool_with_keys_of_another_fleet_says_that_the_keys_fit_nobody,
          what_is_wrong_with_keys_is_one_line]
 
 
@@ -155,7 +153,7 @@ def main():
         config = aircraft_config(folder)
         for k in (1, 2):
             transport = transports[(k - 1) % len(transports)]
-            keys = maker.add("fleet", f"uav{k}", transport, "--config", config)
+            keys = maker.add("fleet", f"uav{k}", "--config", config)
             processes.start([uav, "--config", config, "--node", f"uav{k}", "--domain", domain, "--transport", transport,
                              "--keys", keys])
         for transport in transports:

@@ -21,6 +21,7 @@ FleetNode::FleetNode(FleetWorld &world, const Oracles &oracles, SimulatedNetwork
     : _world(world),
       _oracles(oracles),
       _network(network),
+      _keys(network),
       _random(random),
       _index(index),
       _stateDirectory(std::move(stateDirectory))
@@ -29,7 +30,7 @@ FleetNode::FleetNode(FleetWorld &world, const Oracles &oracles, SimulatedNetwork
 
 FleetNode::~FleetNode() = default;
 
-GatewayConfig FleetNode::MakeConfig() const
+GatewayConfig FleetNode::MakeConfig()
 {
     const MachinePlan &plan = _world.Plan.Machines[_index];
     GatewayConfig config;
@@ -42,6 +43,10 @@ GatewayConfig FleetNode::MakeConfig() const
     config.Subscribe.push_back({.Message = "Mode", .Type = "Rabit::Sim::Mode"});
     config.Accept.push_back({.Queue = Crew::Queue, .Types = {"Rabit::Sim::Note"}});
     config.Send = plan.Send;
+    if (_world.Plan.HasKeys)
+    {
+        config.Security.emplace().Member = _keys.Member(plan.Name);
+    }
     if (_world.Plan.Thin && _world.Plan.Thin->Budget)
     {
         config.Radio.Budget = static_cast<double>(*_world.Plan.Thin->Budget);

@@ -7,6 +7,7 @@
 #include <rabit/ManualClock.h>
 #include <rabit/RabitSteppedReactor.h>
 #include <rabit/RabitWorkspace.h>
+#include <rabit/simulated/SimulatedKeys.h>
 #include <rabit/simulated/SimulatedNetwork.h>
 
 #include <filesystem>
@@ -56,12 +57,13 @@ private:
         Sim::Crew *Crew = nullptr;  // the reactor's
     };
 
-    GatewayConfig MakeConfig() const;
+    GatewayConfig MakeConfig();
     void End();
 
     FleetWorld &_world;
     const Oracles &_oracles;
     SimulatedNetwork &_network;
+    SimulatedKeys _keys;
     SimRandom &_random;
     const std::size_t _index;
     const std::filesystem::path _stateDirectory;

@@ -108,7 +108,8 @@ void AddFault(FleetPlan &plan, SimRandom &random)
 FleetPlan::FleetPlan(std::uint64_t seed)
 {
     SimRandom random(seed * 0x2545f4914f6cdd1dULL + 7);
-    seed >= FirstThinSeed ? DrawThin(random) : DrawWide(random);
+    HasKeys = seed >= FirstKeyedSeed;
+    seed >= FirstThinSeed && !HasKeys ? DrawThin(random) : DrawWide(random);
 }
 
 // Bad networks with many faults, but with room for all that is sent.

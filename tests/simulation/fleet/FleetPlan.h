@@ -105,9 +105,12 @@ struct FleetPlan
     // The lease of all nodes: the default, or one longer than most cuts.
     std::chrono::milliseconds Lease{};
     std::optional<ThinPlan> Thin;
+    bool HasKeys = false;
 
-    // Seeds from this one on are over a thin medium.
+    // Seeds from this one on are over a thin medium, and those from the other one on are of fleets with keys
+    // over networks as of the first ones.
     static constexpr std::uint64_t FirstThinSeed = 1'000'000;
+    static constexpr std::uint64_t FirstKeyedSeed = 2'000'000;
 
     explicit FleetPlan(std::uint64_t seed);
 

@@ -269,15 +269,6 @@ TEST(Settings, AMemberHasTheNameInItsKeys)
     EXPECT_THAT(problems[0].Text, HasSubstr("uav1"));
 }
 
-TEST(Settings, AMemberDoesNotUseDdsSecurity)
-{
-    auto settings = SettingsOfAMember("uav1");
-    settings.Security.emplace();
-    const auto problems = FindImpossible(settings);
-    ASSERT_THAT(problems, SizeIs(1));
-    EXPECT_EQ(problems[0].Setting, "security");
-}
-
 TEST(Settings, AnInterfaceThatCanBeNoneIsImpossible)
 {
     TransportSettings settings;

@@ -1,4 +1,4 @@
-// Hosts that wait for an introduction.
+// Where nodes wait for an introduction.
 #include "common/HeardStrangers.h"
 
 #include <gmock/gmock.h>
@@ -11,13 +11,13 @@ namespace
 {
 
 using Rabit::Rtps::HeardStrangers;
-using Rabit::Rtps::HostAddress;
+using Rabit::Rtps::Place;
 
 constexpr HeardStrangers::TimePoint StrangersStart{std::chrono::hours(1)};
 
-HostAddress StrangerNumber(int number)
+Place StrangerNumber(int number)
 {
-    return {10, 0, 0, static_cast<std::uint8_t>(number)};
+    return {.Host = {10, 0, 0, static_cast<std::uint8_t>(number)}, .Port = 0};
 }
 
 TEST(StrangersThatWereHeard, AreForgottenAfterTheirLastDatagram)

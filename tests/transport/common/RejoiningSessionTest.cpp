@@ -44,14 +44,6 @@ TEST_F(RejoiningSessionTest, DropsTheDatagramsOfATurnInWhichItJoinsAnew)
     EXPECT_FALSE(_script.IsOpen);
 }
 
-TEST_F(RejoiningSessionTest, TakesNoTurnsWithSecurity)
-{
-    _settings.Security.emplace();
-    const auto session = Open();
-    EXPECT_FALSE(session->BeginTurn(1000));
-    EXPECT_FALSE(_script.Sending->IsOfThisThread());
-}
-
 // As without a free descriptor. The kernel reports no change when they can be listed again.
 TEST_F(RejoiningSessionTest, LooksAgainForNetworksThatCannotBeListed)
 {

@@ -175,6 +175,27 @@ TEST_P(NetworkSettings, APeerListedOnOneSideIsEnough)
     ExpectDelivery(one, other);
 }
 
+// The card of the other node has been sent before, and does not change any more: it has to be asked for.
+TEST_P(NetworkSettings, ANodeThatIsListedMayStartLater)
+{
+    auto listed = Settings("uav1");
+    auto listing = Settings("ground");
+    listed.Multicast = false;
+    listing.Multicast = false;
+    listing.Peers = {"localhost"};
+    SampleRecorder recorder;
+    const auto writing = Backend().Open(listing, {});
+    const auto writer = writing->CreateWriter(TextTopic(), State(), {});
+    const auto reading = Backend().Open(listed, {});
+    const auto reader = reading->CreateReader(TextTopic(), State(), {}, recorder.Handler());
+    EXPECT_TRUE(Net().Until(
+        [&]
+        {
+            WriteOnceTaken(*writer, MakeSample(0, "text"), 1);
+            return recorder.Count() > 0;
+        }));
+}
+
 // More sessions have come and gone than ports are tried for a peer without a port.
 TEST_P(NetworkSettings, ASessionThatIsClosedLeavesItsPortToTheNext)
 {

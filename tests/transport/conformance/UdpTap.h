@@ -89,6 +89,14 @@ public:
         return largest;
     }
 
+    // Sends a datagram to where the last one came from.
+    void Answer(const std::vector<std::uint8_t> &datagram)
+    {
+        Take();
+        static_cast<void>(sendto(_socket, datagram.data(), datagram.size(), 0,
+                                 reinterpret_cast<const sockaddr *>(&_from), sizeof _from));
+    }
+
 private:
     using Bytes = std::vector<std::uint8_t>;
 
@@ -99,15 +107,19 @@ private:
     void Take()
     {
         std::array<std::uint8_t, 65536> buffer{};
-        for (ssize_t size = 0; (size = recv(_socket, buffer.data(), buffer.size(), MSG_DONTWAIT)) >= 0;)
+        socklen_t length = sizeof _from;
+        for (ssize_t size = 0; (size = recvfrom(_socket, buffer.data(), buffer.size(), MSG_DONTWAIT,
+                                                reinterpret_cast<sockaddr *>(&_from), &length)) >= 0;)
         {
             _datagrams.emplace_back(buffer.begin(), buffer.begin() + size);
+            length = sizeof _from;
         }
     }
 
     const int _socket;
     int _port = 0;
     std::vector<Bytes> _datagrams;
+    sockaddr_in _from{};  // of the last one
 };
 
 }  // namespace Rabit::Conformance

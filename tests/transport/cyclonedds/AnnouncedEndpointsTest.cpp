@@ -115,11 +115,6 @@ TEST(AnnouncedEndpoints, APlainProgramKeepsThem)
     ExpectUnchanged(Message(Announcement("something else", All)));
 }
 
-TEST(AnnouncedEndpoints, OneWithSecurityKeepsThem)
-{
-    ExpectUnchanged(Message(Announcement(Node, All | 1u << 16)));
-}
-
 TEST(AnnouncedEndpoints, WhatIsNoAnnouncementStaysAsItIs)
 {
     ExpectUnchanged(Message(Announcement(Node, All, WithKey)));

@@ -2,10 +2,14 @@
 #include <gmock/gmock.h>
 #include <rabit/cyclonedds/CycloneDdsTransport.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "../common/TestMembers.h"
 #include "../conformance/NetworkFixture.h"
 #include "../conformance/ProcessHarness.h"
 #include "../conformance/Recorder.h"
@@ -102,6 +106,53 @@ TEST_F(CycloneDdsMembersTest, AProgramWithoutKeysHearsNothingAndIsNotHeard)
     EXPECT_EQ(atPlain.Count(Kind::Appeared, "witness", 1), 1);
 }
 
+// The forbidden writer is announced first, and keeps no other one from being heard.
+TEST_F(CycloneDdsMembersTest, AMemberDeliversNothingOnATopicThatItsPermissionsLack)
+{
+    SampleRecorder secrets;
+    SampleRecorder poses;
+    TestMembers fleet("fleet");
+    const auto uav = Backend().Open(
+        SettingsWith("uav1", fleet.Member("uav1", {{.Topic = "Pose", .MayWrite = true, .MayRead = true}})),
+        {});
+    const auto ground = Backend().Open(Settings("ground"), {});
+    const auto secret = uav->CreateWriter(TextTopic("Secret"), State(), {});
+    const auto pose = uav->CreateWriter(TextTopic("Pose"), State(), {});
+    const auto secretReader = ground->CreateReader(TextTopic("Secret"), State(), {}, secrets.Handler());
+    const auto poseReader = ground->CreateReader(TextTopic("Pose"), State(), {}, poses.Handler());
+    ASSERT_TRUE(Net().Until(
+        [&]
+        {
+            WriteOnceTaken(*secret, MakeSample(0, "secret"), 1);
+            WriteOnceTaken(*pose, MakeSample(0, "pose"), 1);
+            return poses.Count() > 0;
+        }));
+    EXPECT_EQ(secretReader->MatchedWriters(), 0);
+    EXPECT_EQ(secrets.Count(), 0u);
+}
+
+TEST_F(CycloneDdsMembersTest, AMemberIsNotSentATopicThatItsPermissionsLack)
+{
+    SampleRecorder secrets;
+    SampleRecorder poses;
+    TestMembers fleet("fleet");
+    const auto uav = Backend().Open(Settings("uav1"), {});
+    const auto tool =
+        Backend().Open(SettingsWith("tool", fleet.Member("tool", {{.Topic = "Pose", .MayRead = true}})), {});
+    const auto secretReader = tool->CreateReader(TextTopic("Secret"), State(), {}, secrets.Handler());
+    const auto poseReader = tool->CreateReader(TextTopic("Pose"), State(), {}, poses.Handler());
+    const auto secret = uav->CreateWriter(TextTopic("Secret"), State(), {});
+    const auto pose = uav->CreateWriter(TextTopic("Pose"), State(), {});
+    ASSERT_TRUE(Net().Until(
+        [&]
+        {
+            WriteOnceTaken(*secret, MakeSample(0, "secret"), 1);
+            WriteOnceTaken(*pose, MakeSample(0, "pose"), 1);
+            return poses.Count() > 0;
+        }));
+    EXPECT_EQ(secret->MatchedReaders(), 0);
+}
+
 TEST_F(CycloneDdsMembersTest, NothingThatGoesToAGroupIsPlain)
 {
     const int first = 7400 + 250 * Settings("uav1").Domain;
@@ -140,6 +191,39 @@ TEST_F(CycloneDdsMembersTest, NothingThatGoesToAListedPeerIsPlain)
     EXPECT_FALSE(peer.Saw("RTPS"));
 }
 
+// The vendor reads from the sockets that send, too. A datagram that reached its parser would be no row.
+TEST_F(CycloneDdsMembersTest, APlainDatagramToASocketThatSendsDoesNotPassByTheKeys)
+{
+    UdpTap peer(0, "");
+    auto settings = Settings("uav1");
+    settings.Multicast = false;
+    settings.Peers = {"127.0.0.1:" + std::to_string(peer.Port())};
+    const auto uav = Backend().Open(settings, {});
+    ASSERT_TRUE(Net().Until([&] { return peer.Sealed() > 0; }));
+    const std::vector<std::uint8_t> plain{'R', 'T', 'P', 'S', 2, 1, 1, 16, 1,  2,
+                                          3,   4,   5,   6,   7, 8, 9, 10, 11, 12};
+    EXPECT_TRUE(Net().Until(
+        [&]
+        {
+            peer.Answer(plain);
+            const auto rows = settings.Member->Problems();
+            return std::any_of(rows.begin(), rows.end(),
+                               [](const SettingsProblem &row)
+                               { return row.Text.find("a program without keys") != std::string::npos; });
+        }));
+}
+
+TEST_F(CycloneDdsMembersTest, APeerListedOnOneSideIsEnoughWhicheverStartsFirst)
+{
+    auto listed = Settings("uav1");
+    auto listing = Settings("ground");
+    listed.Multicast = false;
+    listing.Multicast = false;
+    listing.Peers = {"127.0.0.1"};
+    ExpectDelivery(listed, listing);
+    ExpectDelivery(listing, listed);
+}
+
 TEST_F(CycloneDdsMembersTest, NoSealedDatagramIsLargerThanTheLargestOne)
 {
     const int first = 7400 + 250 * Settings("uav1").Domain;
@@ -172,11 +256,6 @@ TEST_F(CycloneDdsMembersTest, AConfigurationWithSharedMemoryIsRefused)
     ExpectRefusalWith("<SharedMemory><Enable>true</Enable></SharedMemory>");
 }
 
-TEST_F(CycloneDdsMembersTest, AConfigurationWithDdsSecurityIsRefused)
-{
-    ExpectRefusalWith("<Security><Authentication></Authentication></Security>");
-}
-
 TEST_F(CycloneDdsMembersTest, AConfigurationWithTcpIsRefused)
 {
     ExpectRefusalWith("<General><Transport>tcp</Transport></General>");
@@ -190,6 +269,16 @@ TEST_F(CycloneDdsMembersTest, AConfigurationWithASocketForEachParticipantIsRefus
 TEST_F(CycloneDdsMembersTest, AConfigurationWithSeveralReceivingThreadsIsRefused)
 {
     ExpectRefusalWith("<Internal><MultipleReceiveThreads>true</MultipleReceiveThreads></Internal>");
+}
+
+TEST_F(CycloneDdsMembersTest, AConfigurationThatHearsBeforeTheKeysAreThereIsRefused)
+{
+    ExpectRefusalWith("<Internal><ControlTopic><Deaf>false</Deaf></ControlTopic></Internal>");
+}
+
+TEST_F(CycloneDdsMembersTest, AConfigurationThatHearsByItselfLaterIsRefused)
+{
+    ExpectRefusalWith("<Internal><ControlTopic InitialReset=\"1ms\"/></Internal>");
 }
 
 TEST_F(CycloneDdsMembersTest, AConfigurationThatShowsTheVendorsStateIsRefused)

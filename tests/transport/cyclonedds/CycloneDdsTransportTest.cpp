@@ -23,6 +23,19 @@ std::unique_ptr<TransportHarness> MakeHarness()
     return std::make_unique<ProcessHarness>(std::make_unique<CycloneDdsTransport>());
 }
 
+// A configuration whose DDS Security is complete, in an element of that name: the vendor itself accepts it.
+// `space`: behind the name, where the section begins.
+std::string WithSecurity(const std::string &element, const std::string &space = "")
+{
+    return "<CycloneDDS><Domain Id=\"any\"><" + element + space +
+           "><Authentication><Library/><IdentityCertificate>data:,x</IdentityCertificate>"
+           "<IdentityCA>data:,x</IdentityCA><PrivateKey>data:,x</PrivateKey></Authentication>"
+           "<AccessControl><Library/><Governance>data:,x</Governance>"
+           "<PermissionsCA>data:,x</PermissionsCA><Permissions>data:,x</Permissions></AccessControl>"
+           "<Cryptographic><Library/></Cryptographic></" +
+           element + "></Domain></CycloneDDS>";
+}
+
 class CycloneDdsTransportTest : public testing::Test, protected NetworkFixture
 {
 protected:
@@ -34,6 +47,20 @@ TEST_F(CycloneDdsTransportTest, ABrokenConfigurationFileIsRefusedWithTheVendorsR
     auto settings = Settings("uav1");
     settings.BackendConfig = TemporaryFile("<CycloneDDS><Domain Id=\"any\"><Generl/></Domain></CycloneDDS>");
     ExpectRefusal(settings, "Generl", "backend_config");
+}
+
+TEST_F(CycloneDdsTransportTest, AConfigurationWithDdsSecurityIsRefused)
+{
+    auto settings = Settings("uav1");
+    settings.BackendConfig = TemporaryFile(WithSecurity("Security"));
+    ExpectRefusal(settings, "rabit keys", "backend_config");
+}
+
+TEST_F(CycloneDdsTransportTest, TheVendorsOtherSpellingsOfDdsSecurityAreRefused)
+{
+    auto settings = Settings("uav1");
+    settings.BackendConfig = TemporaryFile(WithSecurity("security", " "));
+    ExpectRefusal(settings, "rabit keys", "backend_config");
 }
 
 TEST_F(CycloneDdsTransportTest, ARefusedSessionLeavesTheDomainFree)

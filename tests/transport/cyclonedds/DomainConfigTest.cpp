@@ -39,4 +39,13 @@ TEST(DomainConfig, IsTheSameInEachLocale)
     EXPECT_EQ(Rabit::Cyclone::MakeDomainConfig(settings, 0), classic);
 }
 
+// Until the seal is there, the vendor must learn nothing.
+TEST(DomainConfig, IsDeafAtFirstWithASealAlone)
+{
+    const std::string deaf = "<ControlTopic><Deaf>true</Deaf></ControlTopic>";
+    const Rabit::TransportSettings settings;
+    EXPECT_NE(Rabit::Cyclone::MakeDomainConfig(settings, 87).find(deaf), std::string::npos);
+    EXPECT_EQ(Rabit::Cyclone::MakeDomainConfig(settings, 0).find("Deaf"), std::string::npos);
+}
+
 }  // namespace

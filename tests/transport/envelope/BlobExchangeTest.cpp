@@ -189,6 +189,54 @@ TEST_F(BlobExchanges, SendAStrangerNoMoreThanCameFromIt)
     EXPECT_EQ(B.Incomplete(), BlobPartSize);
 }
 
+// It says that the blob is as large as one can be, and sends each part just before it would be given up.
+TEST_F(BlobExchanges, AMemberThatSendsWrongPartsSlowlyKeepsABlobBackForSecondsAlone)
+{
+    const Bytes wrong(BlobPartSize, 0);
+    const TimePoint begin = Now;
+    std::size_t index = 0;
+    while (Came.empty() && Now - begin < 60s)
+    {
+        // Its sessions take turns.
+        const BlobExchange::Source liar{.Tag = static_cast<SessionTag>(30 + index % 3), .In = 4, .Number = 3};
+        B.Want(BlobKind::Permissions, Of, liar, Now);
+        BlobMessage lie;
+        lie.Part = BlobPart{
+            .Kind = BlobKind::Permissions, .Index = index, .Size = LargestBlob, .Of = Of, .Bytes = wrong};
+        for (const SessionTag tag : {30u, 31u, 32u})
+        {
+            B.Received(lie, {.Tag = tag, .In = 4, .Number = 3}, true, Now);
+        }
+        B.Want(BlobKind::Permissions, Of, {.Tag = 1, .In = 4, .Number = 1}, Now);
+        ++index;
+        Run(900ms);
+    }
+    EXPECT_EQ(Came.count(1), 1u);
+    EXPECT_LE(Now - begin, 6s);
+}
+
+TEST(BlobOffers, AreNotPostponedForLongByAMemberThatSendsPartsWithoutEnd)
+{
+    const Bytes bulletin = ContentOf(2500);
+    const Hash of = Sha256(bulletin);
+    BlobExchange honest{1, BlobHeader, 128};
+    honest.SetOwn(BlobKind::Bulletin, of, std::make_shared<const Bytes>(bulletin));
+    BlobMessage part;
+    part.Part = BlobPart{.Kind = BlobKind::Bulletin,
+                         .Index = 1,
+                         .Size = bulletin.size(),
+                         .Of = of,
+                         .Bytes = std::span(bulletin).subspan(BlobPartSize, BlobPartSize)};
+    std::size_t offers = 0;
+    for (TimePoint now{1h}; now < TimePoint{1h} + 20s; now += 50ms)
+    {
+        honest.Offer(3, now);
+        honest.Received(part, {.Tag = 2, .In = 3, .Number = 2}, true, now);
+        offers += honest.TakeDue(now) ? 1 : 0;
+    }
+    EXPECT_GE(offers, 4u);
+}
+
 TEST_F(BlobExchanges, TakeNoPartsFromOthersThanTheSource)
 {
     B.Want(BlobKind::Permissions, Of, {.Tag = 3, .In = 4}, Now);

@@ -165,6 +165,19 @@ TEST_F(ClaimExchanges, AskNobodyThatIsSilent)
     EXPECT_FALSE(Exchange.Due().has_value());
 }
 
+TEST_F(ClaimExchanges, AskAnInventedSessionFourTimesForEachDatagram)
+{
+    for (int i = 0; i < 2; ++i)
+    {
+        Exchange.Heard(1, Standing::Unknown, 7, Now);
+        EXPECT_EQ(Run(4s).size(), 4u);
+        EXPECT_FALSE(Exchange.Due().has_value());
+    }
+    // A claim of it came, with the right tag.
+    Exchange.Heard(1, Standing::Claimed, 7, Now);
+    EXPECT_GE(Run(4s).size(), 8u);
+}
+
 TEST_F(ClaimExchanges, AskNobodyThatIsProven)
 {
     Exchange.Heard(1, Standing::Claimed, 7, Now);

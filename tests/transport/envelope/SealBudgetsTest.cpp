@@ -136,6 +136,55 @@ TEST_F(SealBudgets, UnknownSessionsShareTheTimeForTheirKeys)
     EXPECT_EQ(B.Fault(late.Claims(), then + seconds(1)), OpenFault::None);
 }
 
+// Reactions that a share of 10 ms pays for.
+constexpr std::uint64_t PaidReactions = 10'000 / 10;
+
+TEST_F(SealBudgets, DatagramsOfInventedSessionsAreLookedUpAndMostlyNoMore)
+{
+    const TimePoint then = Start + seconds(1);
+    Bytes datagram = A.ToAll(A.Message());
+    for (std::uint32_t i = 0; i < 10'000; ++i)
+    {
+        WriteOuter({.Epoch = 1, .Tag = 7 * i + 1, .Number = i}, datagram);
+        B.Fault(datagram, then);
+    }
+    EXPECT_EQ(CountAtB(OpenFault::UnknownSession), PaidReactions);
+    EXPECT_EQ(CountAtB(OpenFault::OverBudget), 10'000 - PaidReactions);
+    // Sessions that have met are not touched. Nor are the questions to those that were silent.
+    EXPECT_EQ(B.Fault(A.ToAll(A.Message()), then), OpenFault::None);
+    WriteOuter({.Epoch = 9, .Tag = 5, .Number = 1}, datagram);
+    EXPECT_EQ(B.Fault(datagram, then), OpenFault::OverBudget);
+    const TimePoint late = then + seconds(11);
+    EXPECT_EQ(B.Fault(C.ToAll(C.Message()), late), OpenFault::NotFresh);
+}
+
+TEST_F(SealBudgets, DatagramsInTheNamesOfSilentSessionsAreMostlyNoReasonToAsk)
+{
+    const TimePoint late = Start + seconds(11);
+    const Bytes datagram = A.ToAll(A.Message());
+    for (int i = 0; i < 3000; ++i)
+    {
+        B.Fault(datagram, late);
+    }
+    EXPECT_EQ(CountAtB(OpenFault::NotFresh), PaidReactions);
+    EXPECT_EQ(CountAtB(OpenFault::OverBudget), 3000 - PaidReactions);
+}
+
+TEST_F(SealBudgets, InventedClaimsAreNotHashedBeyondTheirTime)
+{
+    // The tag does not belong to the session that is introduced.
+    Node outsider(Signs, "uav7", 7);
+    Bytes claim = outsider.Claims();
+    claim[OuterSize] = static_cast<std::uint8_t>(claim[OuterSize] + 1);
+    const TimePoint then = Start + seconds(1);
+    for (int i = 0; i < 3000; ++i)
+    {
+        B.Fault(claim, then);
+    }
+    EXPECT_EQ(CountAtB(OpenFault::Malformed), 20'000u / 10);
+    EXPECT_EQ(CountAtB(OpenFault::OverBudget), 1000u);
+}
+
 TEST(EnvelopeProcessorBudget, GrowsWithTimeUpToASecondsShare)
 {
     ProcessorBudget budget{milliseconds(1), ProcessorBudget::Signature};

@@ -251,6 +251,24 @@ TEST(SealedRecordings, OfManyClaimsTakeBoundedMemoryAndBoundedAnswers)
     EXPECT_LE(fleet->RunUntil([&] { return fleet->IsOpen(0, 2) && fleet->IsOpen(2, 0); }, 60s), 3s);
 }
 
+// Datagrams to strangers' hosts use up an allowance.
+TEST(SealedRecordings, OfNodesThatAreKnownMakeNoHostAStranger)
+{
+    const auto fleet = FleetOf(2);
+    fleet->Records = true;
+    fleet->StartAll();
+    fleet->Run(10s);
+    fleet->Records = false;
+    fleet->Run(5s);
+    ASSERT_TRUE(fleet->AreAllOpen());
+    ASSERT_TRUE(fleet->Nodes[0]->Core->Strangers(fleet->Now).empty());
+    for (const Bytes &datagram : fleet->Recorded)
+    {
+        fleet->Inject(0, datagram);
+    }
+    EXPECT_TRUE(fleet->Nodes[0]->Core->Strangers(fleet->Now).empty());
+}
+
 TEST(SealedRecordings, OfInventedSessionsAreAnsweredSeldom)
 {
     const auto fleet = FleetOf(1);
@@ -280,7 +298,7 @@ TEST(SealedTwins, TwoNodesWithTheSameKeysAreARow)
     fleet->Run(20s);
     EXPECT_TRUE(HasRow(*fleet, 0, "uav2", "live twice"));
     fleet->Nodes[2]->Core.reset();
-    fleet->Run(15s);
+    fleet->Run(LastingProblems::PauseOf(ProblemKind::Usual) + 5s);
     EXPECT_FALSE(HasRow(*fleet, 0, "uav2", "live twice"));
 }
 
@@ -309,6 +327,70 @@ TEST(SealedStrangers, AProgramWithoutKeysIsNotHeardAndIsARow)
     }
     EXPECT_TRUE(HasRow(*fleet, 0, "10.0.0.9", "a program without keys sends there"));
     EXPECT_EQ(fleet->Nodes[0]->Keys->Problems().size(), 1u);
+}
+
+// `rabit doctor` calls as a participant of no vendor, and by a datagram in the epoch of calls.
+Bytes SealedCall()
+{
+    const Outer outer{.Epoch = EpochOfCalls};
+    Bytes call(OuterOverhead(outer.Kind));
+    WriteOuter(outer, call);
+    return call;
+}
+
+TEST(SealedStrangers, OfNoVendorOnlyLookWhoIsThere)
+{
+    const auto fleet = FleetOf(1);
+    fleet->StartAll();
+    RtpsHeader caller = HeaderOf(9, 0);
+    caller[Prefix - 2] = 0;
+    for (int i = 0; i < 15; ++i)
+    {
+        EXPECT_TRUE(fleet->Inject(0, MessageOf(caller), 8).empty());
+        fleet->Run(1s);
+    }
+    EXPECT_TRUE(fleet->Nodes[0]->Keys->Problems().empty());
+}
+
+TEST(SealedCalls, AreAnsweredByOneClaimThatAsksNobody)
+{
+    const auto fleet = FleetOf(3);
+    fleet->StartAll();
+    fleet->Run(20s);
+    ASSERT_TRUE(fleet->AreAllOpen());
+    const auto before = fleet->OwnBytesOf;
+    fleet->Inject(0, SealedCall());
+    fleet->Run(3s);
+    EXPECT_GT(fleet->OwnBytesOf[0], before.at(0));
+    EXPECT_LE(fleet->OwnBytesOf[0] - before.at(0), 500u);
+    EXPECT_EQ(fleet->OwnBytesOf[1], before.at(1));
+    EXPECT_EQ(fleet->OwnBytesOf[2], before.at(2));
+    EXPECT_TRUE(fleet->Nodes[0]->Core->Strangers(fleet->Now).empty());
+}
+
+TEST(SealedCalls, AreAnsweredOnceInASecondAndMakeNoRow)
+{
+    const auto fleet = FleetOf(2);
+    fleet->StartAll();
+    fleet->Run(20s);
+    const auto before = fleet->OwnBytesOf;
+    fleet->Records = true;
+    for (int i = 0; i < 150; ++i)
+    {
+        fleet->Inject(0, SealedCall());
+        fleet->Run(100ms);
+    }
+    fleet->Records = false;
+    const auto claims = std::count_if(fleet->Recorded.begin(), fleet->Recorded.end(),
+                                      [](const Bytes &datagram)
+                                      {
+                                          Outer outer;
+                                          return ReadOuter(datagram, outer) == OuterFault::None &&
+                                                 outer.Kind == OuterKind::Claim;
+                                      });
+    EXPECT_EQ(claims, 15);
+    EXPECT_EQ(fleet->OwnBytesOf[1], before.at(1));
+    EXPECT_TRUE(fleet->Nodes[0]->Keys->Problems().empty());
 }
 
 TEST(SealedBulletins, ThatTheAuthorityDidNotSignAreARowAndNoLines)
@@ -405,6 +487,41 @@ TEST_F(SealedPlaces, AreKeptInTheNextEpoch)
     Fleet->Run(5s);
     EXPECT_EQ(AddedTo(7410), 7u);
     EXPECT_FALSE(Fleet->Inject(1, Last, 0).empty());
+}
+
+TEST_F(SealedPlaces, AreThoseOfTheOwnParticipantAlone)
+{
+    Announce(1, 7410);
+    // The third node announces the participant of the second one.
+    Bytes message = RtpsBytes::ParticipantMessage(Fleet->PrefixOfNode(1), 7499);
+    std::copy(Fleet->Nodes[2]->Vendor.begin(), Fleet->Nodes[2]->Vendor.end(), message.begin());
+    Bytes sealed;
+    ASSERT_TRUE(Fleet->Nodes[2]->Core->Seal(message, std::nullopt, OuterClass::Traffic, sealed, Fleet->Now));
+    Fleet->Send(2, sealed);
+    Fleet->Run(100ms);
+    EXPECT_EQ(AddedTo(7410), 7u);
+    EXPECT_EQ(AddedTo(7499), 71u);
+}
+
+// Elsewhere its datagrams may be repeated by anybody.
+TEST_F(SealedPlaces, AreWhereANodeIsAnsweredThatSendsFromThere)
+{
+    using Rabit::Rtps::Place;
+    Announce(1, 7410);
+    Fleet->Hears = [](std::size_t, std::size_t) { return false; };
+    Fleet->Run(15s);
+    const auto strangersAfterADatagramFrom = [&](const Rabit::Rtps::HostAddress &host)
+    {
+        Bytes sealed;
+        EXPECT_TRUE(Fleet->Nodes[1]->Core->Seal(MessageOf(Fleet->Nodes[1]->Vendor), std::nullopt,
+                                                OuterClass::Traffic, sealed, Fleet->Now));
+        EXPECT_TRUE(Fleet->Nodes[0]->Core->Open(sealed, {.Host = host, .Port = 40'000}, Fleet->Now).empty());
+        return Fleet->Nodes[0]->Core->Strangers(Fleet->Now);
+    };
+    const Place known{.Host = RtpsBytes::SenderHost, .Port = 7410};
+    const Place elsewhere{.Host = {10, 9, 9, 9}, .Port = 0};
+    EXPECT_EQ(strangersAfterADatagramFrom(known.Host), std::vector<Place>{known});
+    EXPECT_EQ(strangersAfterADatagramFrom(elsewhere.Host), (std::vector<Place>{known, elsewhere}));
 }
 
 TEST_F(SealedPlaces, OfARevokedNodeAreNotSealedForIt)

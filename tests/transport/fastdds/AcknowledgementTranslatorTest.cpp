@@ -256,17 +256,6 @@ TEST(AcknowledgementTranslator, TranslatesAllSubmessagesOfADatagram)
     EXPECT_EQ(datagram, expected);
 }
 
-TEST(AcknowledgementTranslator, LeavesAloneWhatIsSigned)
-{
-    AcknowledgementTranslator translator;
-    Bytes datagram = Header(1);
-    Append(datagram, {0x33, 1, 4, 0, 0, 0, 0, 0});
-    AppendTo(datagram, HasNothing);
-    const Bytes before = datagram;
-    translator.Translate(datagram);
-    EXPECT_EQ(datagram, before);
-}
-
 TEST(AcknowledgementTranslator, IsBoundedAndCountsRiseAllTheSame)
 {
     AcknowledgementTranslator translator;

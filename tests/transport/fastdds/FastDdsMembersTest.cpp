@@ -172,6 +172,17 @@ TEST_F(FastDdsMembersTest, AMemberIsNotSentATopicThatItsPermissionsLack)
     EXPECT_EQ(secret->MatchedReaders(), 0);
 }
 
+TEST_F(FastDdsMembersTest, APeerListedOnOneSideIsEnoughWhicheverStartsFirst)
+{
+    auto listed = SettingsOf("uav1");
+    auto listing = SettingsOf("ground");
+    listed.Multicast = false;
+    listing.Multicast = false;
+    listing.Peers = {"127.0.0.1"};
+    ExpectDelivery(listed, listing);
+    ExpectDelivery(listing, listed);
+}
+
 TEST_F(FastDdsMembersTest, SharedMemoryIsRefused)
 {
     auto settings = SettingsOf("uav1");
@@ -194,13 +205,15 @@ TEST_F(FastDdsMembersTest, AProfilesFileWithTransportsIsRefused)
     ExpectRefusal(settings, "has transports", "backend_config");
 }
 
-TEST_F(FastDdsMembersTest, AProfilesFileWithSecurityIsRefused)
+TEST_F(FastDdsMembersTest, AProfilesFileWithSecurityIsRefusedWithoutAMemberToo)
 {
-    auto settings = SettingsOf("uav1");
+    auto settings = Settings("uav1");
     settings.BackendConfig = TemporaryFile(ProfileOf("", R"(
         <propertiesPolicy><properties><property>
           <name>dds.sec.auth.plugin</name><value>builtin.PKI-DH</value>
         </property></properties></propertiesPolicy>)"));
+    ExpectRefusal(settings, "DDS Security", "backend_config");
+    settings.Member = Fleet.Member("uav1");
     ExpectRefusal(settings, "DDS Security", "backend_config");
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "guard/RtpsBytes.h"
-#include "rtps/DiscoverySubmessages.h"
 
 namespace
 {
@@ -40,46 +39,20 @@ Receiver At(std::uint32_t port, KeepingReceiver &next)
     return receiver;
 }
 
-// The vendor awaits protected announcements.
 class VendorInputTest : public testing::Test
 {
 protected:
-    VendorInput Input{GroupPort, true};
+    VendorInput Input{GroupPort};
     KeepingReceiver Discovery;
-    Bytes Announcement = ParticipantMessage(Sender);
-    Bytes Goodbye = Rabit::Rtps::GoodbyeOf(Sender, ParticipantMessage(Other), 2);
 };
 
-TEST_F(VendorInputTest, AForgottenParticipantIsAnnouncedBeforeItsGoodbye)
+TEST_F(VendorInputTest, AMessageIsHandedToTheReceiverOfTheGroup)
 {
+    Bytes announcement = ParticipantMessage(Sender);
+    VendorInput::HandOn(Input.DiscoveryReceiver(), announcement);
     Input.NoteReceiver(At(GroupPort, Discovery));
-    Input.Deliver(At(GroupPort, Discovery), Announcement);
-    Input.Forget(Sender, Goodbye);
-    EXPECT_EQ(Discovery.Datagrams, (std::vector{Announcement, Announcement, Goodbye}));
-}
-
-TEST_F(VendorInputTest, AGoodbyeWaitsForAReceiverOfDiscovery)
-{
-    KeepingReceiver unknown;
-    KeepingReceiver samples;
-    Input.Deliver(At(DiscoveryPort, unknown), Announcement);
-    Input.Forget(Sender, Goodbye);
-    Input.NoteReceiver(At(DiscoveryPort + 1, samples));
-    EXPECT_TRUE(samples.Datagrams.empty());
-    Input.NoteReceiver(At(GroupPort, Discovery));
-    EXPECT_EQ(Discovery.Datagrams, (std::vector{Announcement, Goodbye}));
-    Input.NoteReceiver(At(GroupPort, Discovery));
-    EXPECT_EQ(Discovery.Datagrams.size(), 2u);
-}
-
-TEST_F(VendorInputTest, AGoodbyeWaitsUntilItIsKnownWhichPortIsForDiscovery)
-{
-    Input.NoteReceiver(At(DiscoveryPort, Discovery));
-    Input.Forget(Sender, Goodbye);
-    EXPECT_TRUE(Discovery.Datagrams.empty());
-    Input.NoteOwn(ParticipantMessage(Other, DiscoveryPort));
-    Input.NoteReceiver(At(DiscoveryPort, Discovery));
-    EXPECT_EQ(Discovery.Datagrams, std::vector<Bytes>{Goodbye});
+    VendorInput::HandOn(Input.DiscoveryReceiver(), announcement);
+    EXPECT_EQ(Discovery.Datagrams, std::vector<Bytes>{announcement});
 }
 
 TEST_F(VendorInputTest, ThePortsThatTheOwnParticipantAnnouncesAreForDiscovery)
@@ -90,7 +63,6 @@ TEST_F(VendorInputTest, ThePortsThatTheOwnParticipantAnnouncesAreForDiscovery)
     EXPECT_EQ(Input.DiscoveryReceiver().Next, nullptr);
     Input.NoteOwn(ParticipantMessage(Other, DiscoveryPort));
     EXPECT_EQ(Input.DiscoveryReceiver().Next, &Discovery);
-    EXPECT_EQ(Input.OwnPrefix(), Other);
 }
 
 TEST_F(VendorInputTest, ThePortOfCardsIsForDiscovery)

@@ -16,40 +16,6 @@ Bytes Liveliness(const Bytes &payload)
     return Message(Data, DataBody(1, payload, LivelinessWriter, LivelinessReader), HasData);
 }
 
-Bytes BigEndian32(std::uint32_t value)
-{
-    const Bytes little = U32(value);
-    return Bytes(little.rbegin(), little.rend());
-}
-
-// The request that begins a handshake. `signedData` is what its sender announces: a list of parameters in
-// big-endian form (DDS Security 1.1, 9.3.2.5.1).
-Bytes Handshake(const Bytes &signedData)
-{
-    return Message(Data,
-                   DataBody(1,
-                            Join({{0, 1, 0, 0},
-                                  Bytes(96),
-                                  Text("dds.sec.auth"),
-                                  U32(1),
-                                  Text("DDS:Auth:PKI-DH:1.0+Req"),
-                                  U32(0),
-                                  U32(1),
-                                  Text("c.pdata"),
-                                  U32(static_cast<std::uint32_t>(signedData.size())),
-                                  signedData}),
-                            HandshakeWriter),
-                   HasData);
-}
-
-// The list of properties in it: two, of which `second` is the rest.
-Bytes SignedProperties(const Bytes &second)
-{
-    const Bytes list =
-        Join({BigEndian32(2), BigEndian32(2), {'a', 0, 0, 0}, BigEndian32(2), {'b', 0, 0, 0}, second});
-    return Join({{0, 0x59, 0, static_cast<std::uint8_t>(list.size())}, list});
-}
-
 }  // namespace
 
 // The submessage reaches to the end of the message, which comes in the middle of the sample's number. Its
@@ -122,20 +88,6 @@ Bytes GoodbyeOfAnother()
                    OnlyInlineQos);
 }
 
-Bytes HandshakeWithSignedProperties()
-{
-    return Handshake(
-        Join({SignedProperties(Join({BigEndian32(2), {'c', 0, 0, 0}, BigEndian32(2), {'d', 0, 0, 0}})),
-              {0, 1, 0, 0}}));
-}
-
-// The signed data ends with the name of the second property, whose padding is missing. The vendor subtracts
-// it from what is left, so that 2^64 bytes are left for the value.
-Bytes HandshakeWithUnpaddedProperties()
-{
-    return Handshake(SignedProperties(Join({BigEndian32(2), {'c', 0}})));
-}
-
 std::vector<Fault> CycloneDdsFaults()
 {
     const auto of = [](const char *name, std::vector<Bytes> datagrams)
@@ -150,10 +102,6 @@ std::vector<Fault> CycloneDdsFaults()
         of("issue-2402", {MessageOfAHeaderAlone()}),
         of("pull-request-2335",
            {Announcement(), WriterOfAnother(), LivelinessOfAnother(), GoodbyeOfAnother()}),
-        {.Name = "CVE-2024-10838",
-         .Vendor = "cyclonedds",
-         .Keys = true,
-         .Datagrams = {AnnouncementWithTokens(), HandshakeWithUnpaddedProperties()}},
     };
 }
 

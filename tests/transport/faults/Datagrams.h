@@ -11,7 +11,6 @@
 namespace Faults
 {
 
-using Rabit::Rtps::HandshakeWriter;
 using Rabit::Rtps::LivelinessWriter;
 using Rabit::Rtps::ParticipantEntity;
 using Rabit::Rtps::ParticipantWriter;
@@ -28,17 +27,15 @@ struct Fault
     std::string Name;
     // "fastdds" or "cyclonedds".
     std::string Vendor;
-    // Only participants with DDS Security read the field that is wrong.
-    bool Keys = false;
     // Sent in this order. The first one may be Announcement().
     std::vector<Bytes> Datagrams;
 };
 
-// The parameters of a participant's announcement, with its builtin endpoints (RTPS 2.3, 9.3.2) and `more`.
-// The vendor's answers go to port 9, which discards them.
-Bytes Announced(std::uint32_t endpoints, const Bytes &more, const GuidPrefix &sender = RtpsBytes::Sender);
-// Those of announcements and liveliness.
+// The builtin endpoints of announcements and liveliness (RTPS 2.3, 9.3.2).
 constexpr std::uint32_t BuiltinEndpoints = 0x0c3f;
+// The parameters of a participant's announcement, with these endpoints and `more`. The vendor's answers go to
+// port 9, which discards them.
+Bytes Announced(const Bytes &more);
 
 // A sound announcement of the participant that sends the others: the vendor then listens to its writers of
 // endpoints and of liveliness.
@@ -85,21 +82,6 @@ Bytes TypesBehindTheirParameter();       // CVE-2026-49863
 Bytes PartitionLongerThanItsList();      // GHSA-8g7x-c9fg-g6mh
 Bytes ReaderWithANestedFilter();         // CVE-2026-22591
 
-// Fast DDS with DDS Security (FastDdsSecurity.cpp). The first is sound.
-Bytes AnnouncementWithTokens();
-Bytes TokenOfCountlessProperties();        // CVE-2025-62599
-Bytes TokenOfCountlessBinaryProperties();  // CVE-2025-62600
-Bytes TokenWithAnEndlessValue();           // CVE-2025-62602
-Bytes TokenWithALongValue();               // CVE-2025-64098
-Bytes HandshakeOfCountlessTokens();        // CVE-2025-62603
-Bytes ShortKeyMaterial();                  // Fast DDS issue 6345
-Bytes TokenWithAnEndlessName();            // CVE-2025-62601
-// A whole message under the keys of its sender. The first is sound.
-Bytes ProtectedMessage();
-Bytes ProtectedMessageWithAnEndlessBody();  // CVE-2026-45098
-// One of any number of participants (CVE-2026-45092). In no list: it takes thousands.
-Bytes NumberedParticipant(std::uint32_t number);
-
 // Cyclone DDS (CycloneDds.cpp).
 Bytes SampleThatEndsBeforeItsInlineQos();  // issue 1555
 Bytes LivelinessAsAParameterList();        // issue 1751
@@ -110,13 +92,9 @@ Bytes MessageOfAHeaderAlone();             // issue 2402
 Bytes WriterOfAnother();                   // pull request 2335
 Bytes LivelinessOfAnother();               // pull request 2335
 Bytes GoodbyeOfAnother();                  // pull request 2335
-// With DDS Security. The first is sound.
-Bytes HandshakeWithSignedProperties();
-Bytes HandshakeWithUnpaddedProperties();  // CVE-2024-10838
 
 std::vector<Fault> FastDdsFaults();
 std::vector<Fault> FastDdsAnnouncementFaults();
-std::vector<Fault> FastDdsSecurityFaults();
 std::vector<Fault> CycloneDdsFaults();
 
 }  // namespace Faults

@@ -21,7 +21,7 @@ constexpr std::uint16_t PropertyList = 0x0059;
 
 Bytes ParticipantWith(const Bytes &more)
 {
-    return Message(Data, DataBody(2, Announced(BuiltinEndpoints, more), ParticipantWriter), HasData);
+    return Message(Data, DataBody(2, Announced(more), ParticipantWriter), HasData);
 }
 
 Bytes WriterWith(const Bytes &more)
@@ -51,19 +51,19 @@ Bytes Gapped(std::int64_t start, std::int64_t base)
 
 }  // namespace
 
-Bytes Announced(std::uint32_t endpoints, const Bytes &more, const GuidPrefix &sender)
+Bytes Announced(const Bytes &more)
 {
     return List({Parameter(0x0015, {2, 3, 0, 0}), Parameter(0x0016, {1, 15, 0, 0}),
-                 Parameter(0x0050, Guid(sender, ParticipantEntity)),
+                 Parameter(0x0050, Guid(Sender, ParticipantEntity)),
                  Parameter(0x0002, Join({U32(20), U32(0)})),
                  Parameter(0x0032, Join({U32(1), U32(9), Bytes(12), {127, 0, 0, 1}})),
                  Parameter(0x0031, Join({U32(1), U32(9), Bytes(12), {127, 0, 0, 1}})),
-                 Parameter(0x0058, U32(endpoints)), more});
+                 Parameter(0x0058, U32(BuiltinEndpoints)), more});
 }
 
 Bytes Announcement()
 {
-    return Message(Data, DataBody(1, Announced(BuiltinEndpoints, {}), ParticipantWriter), HasData);
+    return Message(Data, DataBody(1, Announced({}), ParticipantWriter), HasData);
 }
 
 // The name of the property says that it has 64 kB; 8 bytes follow.

@@ -73,9 +73,7 @@ Bytes AddressesThatAreNotThere()
 Bytes EmptyPropertiesThatAreNotThere()
 {
     return Message(
-        Data,
-        DataBody(2, Announced(BuiltinEndpoints, Parameter(0x0059, Join({U32(0x20000000), Bytes(8)}))),
-                 ParticipantWriter),
+        Data, DataBody(2, Announced(Parameter(0x0059, Join({U32(0x20000000), Bytes(8)}))), ParticipantWriter),
         HasData);
 }
 

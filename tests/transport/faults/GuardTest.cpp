@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 
 #include "common/RtpsReader.h"
 #include "faults/Datagrams.h"
@@ -15,9 +14,6 @@ namespace
 using namespace Faults;
 using Rabit::Rtps::RtpsGuard;
 using RtpsBytes::Gate;
-
-// Modes with DDS Security, of a governance like ours and of any other.
-constexpr std::array WithKeys = {RtpsGuard::Mode::Protected, RtpsGuard::Mode::Secured};
 
 // True if something got through that has the bytes.
 bool Delivers(const Gate &guard, const Bytes &bytes)
@@ -135,10 +131,10 @@ TEST_F(FastDdsFaults, Cve2025_65016_RisingHeartbeatsAreCutToTheStepsThatTheirDat
 
 // The guard cannot know there what the writer has sent. It lets through as many numbers as cost the vendor
 // little.
-TEST(FastDdsFaultsWithKeys, Cve2025_64438_AGapOfBillionsIsNarrowed)
+TEST(FastDdsFaultsWithSharedMemory, Cve2025_64438_AGapOfBillionsIsNarrowed)
 {
     constexpr std::size_t BaseAt = 20 + 4 + 16;
-    Gate guard(RtpsGuard::Mode::Secured);
+    Gate guard(RtpsGuard::Mode::StructureOnly);
     ASSERT_TRUE(guard.Admit(GapOfBillions()));
     ASSERT_EQ(guard.Handed.size(), 1u);
     const Bytes &gap = guard.Handed.front();
@@ -146,37 +142,10 @@ TEST(FastDdsFaultsWithKeys, Cve2025_64438_AGapOfBillionsIsNarrowed)
               RtpsBytes::Sequence(2 + Rabit::Rtps::WalkBudget::Burst + Rabit::Rtps::WalkBudget::Free));
 }
 
-TEST(FastDdsFaultsWithKeys, Cve2025_64438_AGapInPlainIsStoppedWhereAllIsProtected)
-{
-    Gate guard(RtpsGuard::Mode::Protected);
-    EXPECT_TRUE(guard.Stops(GapOfBillions()));
-}
-
 TEST_F(FastDdsFaults, Cve2023_50257_AGoodbyeFromAnotherAddressIsStopped)
 {
     Guard.From = {10, 0, 0, 66};
     EXPECT_TRUE(Guard.Stops(Goodbye()));
-}
-
-// Nothing in it is signed: DDS Security as the vendor has it leaves goodbyes unprotected.
-TEST(FastDdsFaultsWithKeys, Cve2023_50257_AGoodbyeFromAnotherAddressIsStoppedHoweverOftenItComes)
-{
-    for (const auto mode : WithKeys)
-    {
-        Gate guard(mode);
-        ASSERT_TRUE(guard.Admit(Announcement()));
-        const auto home = guard.From;
-        guard.From = {10, 0, 0, 66};
-        for (int i = 0; i < 10; ++i)
-        {
-            EXPECT_TRUE(guard.Stops(Goodbye()));
-            // The sender's own announcement, which anybody can repeat.
-            EXPECT_TRUE(guard.Admit(Announcement()));
-        }
-        guard.From = home;
-        EXPECT_TRUE(guard.Admit(Goodbye()));
-        EXPECT_EQ(guard.Handed.size(), 1u);
-    }
 }
 
 TEST_F(FastDdsFaults, Issue6437_Cve2026_55063_APartitionWithoutAnEndIsStopped)
@@ -201,9 +170,9 @@ TEST_F(FastDdsFaults, GhsaF4hw_AGapFromTheAwaitedNumberIsStopped)
     EXPECT_TRUE(Guard.Stops(GapToTheHighestNumbers()));
 }
 
-TEST(FastDdsFaultsWithKeys, GhsaF4hw_AGapFromTheAwaitedNumberIsNarrowedOrStopped)
+TEST(FastDdsFaultsWithSharedMemory, GhsaF4hw_AGapFromTheAwaitedNumberIsNarrowedOrStopped)
 {
-    Gate guard(RtpsGuard::Mode::Secured);
+    Gate guard(RtpsGuard::Mode::StructureOnly);
     ASSERT_TRUE(guard.Admit(GapFromTheAwaitedNumber()));
     ASSERT_EQ(guard.Handed.size(), 1u);
     EXPECT_EQ(BaseOfGap(guard.Handed.front()),
@@ -222,14 +191,12 @@ TEST_F(FastDdsFaults, Ghsa6m2p_AHeartbeatOfTheLastNumberIsStopped)
     EXPECT_TRUE(Guard.Stops(HeartbeatOfTheLastNumber()));
 }
 
-TEST(FastDdsFaultsWithKeys, Ghsa57rp_Ghsa6m2p_TheHighestNumbersAreStopped)
+TEST(FastDdsFaultsWithSharedMemory, Ghsa57rp_Ghsa6m2p_TheHighestNumbersAreStopped)
 {
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Stops(SampleOfTheHighestNumbers()));
-        EXPECT_TRUE(Gate(mode).Stops(HeartbeatBehindThatSample()));
-        EXPECT_TRUE(Gate(mode).Stops(HeartbeatOfTheLastNumber()));
-    }
+    Gate guard(RtpsGuard::Mode::StructureOnly);
+    EXPECT_TRUE(guard.Stops(SampleOfTheHighestNumbers()));
+    EXPECT_TRUE(guard.Stops(HeartbeatBehindThatSample()));
+    EXPECT_TRUE(guard.Stops(HeartbeatOfTheLastNumber()));
 }
 
 // Honest samples have any size. The buffers of nodes have room for the mark (PayloadPoolTest).
@@ -339,96 +306,6 @@ TEST_F(FastDdsFaults, Cve2026_22591_FiltersAreBlanked)
     EXPECT_FALSE(Delivers(RtpsBytes::U16(ContentFilter)));
 }
 
-TEST(FastDdsFaultsWithKeys, Cve2025_62601_AnEndlessNameIsStopped)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Stops(TokenWithAnEndlessName()));
-    }
-}
-
-TEST(FastDdsFaultsWithKeys, Cve2026_45098_AnEndlessBodyIsStopped)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Stops(ProtectedMessageWithAnEndlessBody()));
-    }
-    EXPECT_TRUE(Gate(RtpsGuard::Mode::Secured).Passes(ProtectedMessage()));
-}
-
-// They are all one host's, within a second.
-TEST(FastDdsFaultsWithKeys, Cve2026_45092_CountlessParticipantsAreStopped)
-{
-    constexpr std::uint32_t Sent = 3000;
-    constexpr std::size_t Most = 1024;
-    for (const auto mode : WithKeys)
-    {
-        Gate guard(mode);
-        std::size_t delivered = 0;
-        for (std::uint32_t number = 0; number < Sent; ++number)
-        {
-            guard.Admit(NumberedParticipant(number));
-            delivered += guard.Handed.size();
-        }
-        EXPECT_GT(delivered, 0u);
-        EXPECT_LE(delivered, Most);
-    }
-}
-
-TEST(FastDdsFaultsWithKeys, Cve2025_62599_CountlessPropertiesAreStopped)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Stops(TokenOfCountlessProperties()));
-    }
-}
-
-TEST(FastDdsFaultsWithKeys, Cve2025_62600_CountlessBinaryPropertiesAreStopped)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Stops(TokenOfCountlessBinaryProperties()));
-    }
-}
-
-TEST(FastDdsFaultsWithKeys, Cve2025_62602_AnEndlessValueIsStopped)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Stops(TokenWithAnEndlessValue()));
-    }
-}
-
-TEST(FastDdsFaultsWithKeys, Cve2025_64098_AValueLongerThanItsTokenIsStopped)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Stops(TokenWithALongValue()));
-    }
-}
-
-TEST(FastDdsFaultsWithKeys, SoundTokensPass)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Passes(AnnouncementWithTokens()));
-    }
-}
-
-TEST(FastDdsFaultsWithKeys, Cve2025_62603_CountlessTokensAreStopped)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Stops(HandshakeOfCountlessTokens()));
-    }
-}
-
-// Encrypted, by a participant that has keys, it passes: the guard has none.
-TEST(FastDdsFaultsWithKeys, Issue6345_KeyMaterialInPlainIsStopped)
-{
-    EXPECT_TRUE(Gate(RtpsGuard::Mode::Protected).Stops(ShortKeyMaterial()));
-}
-
 TEST_F(CycloneDdsFaults, Issue1555_ASampleThatEndsBeforeItsInlineQosIsStopped)
 {
     EXPECT_TRUE(Guard.Stops(SampleThatEndsBeforeItsInlineQos()));
@@ -462,7 +339,7 @@ TEST_F(CycloneDdsFaults, Issue1854_AHeartbeatFarAheadIsStopped)
 
 TEST_F(CycloneDdsFaults, Issue2402_AMessageOfAHeaderAloneIsIgnored)
 {
-    for (const auto mode : {RtpsGuard::Mode::Full, RtpsGuard::Mode::Secured, RtpsGuard::Mode::Protected})
+    for (const auto mode : {RtpsGuard::Mode::Full, RtpsGuard::Mode::StructureOnly})
     {
         Gate guard(mode);
         EXPECT_TRUE(guard.Admit(MessageOfAHeaderAlone()));
@@ -475,15 +352,6 @@ TEST_F(CycloneDdsFaults, PullRequest2335_WhatConcernsAnotherParticipantIsStopped
     EXPECT_TRUE(Guard.Stops(WriterOfAnother()));
     EXPECT_TRUE(Guard.Stops(LivelinessOfAnother()));
     EXPECT_TRUE(Guard.Stops(GoodbyeOfAnother()));
-}
-
-TEST(CycloneDdsFaultsWithKeys, Cve2024_10838_SignedPropertiesWithoutPaddingAreStopped)
-{
-    for (const auto mode : WithKeys)
-    {
-        EXPECT_TRUE(Gate(mode).Passes(HandshakeWithSignedProperties()));
-        EXPECT_TRUE(Gate(mode).Stops(HandshakeWithUnpaddedProperties()));
-    }
 }
 
 }  // namespace

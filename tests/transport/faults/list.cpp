@@ -1,5 +1,5 @@
 // Prints the datagrams of all published faults, one fault a line, for vendor_faults_test.py:
-//   <name> <vendor> <plain or keys> <datagram in hexadecimal digits>...
+//   <name> <vendor> <datagram in hexadecimal digits>...
 #include <iomanip>
 #include <iostream>
 #include <sstream>
@@ -8,14 +8,13 @@
 
 int main()
 {
-    for (const auto &all : {Faults::FastDdsFaults(), Faults::FastDdsAnnouncementFaults(),
-                            Faults::FastDdsSecurityFaults(), Faults::CycloneDdsFaults()})
+    for (const auto &all :
+         {Faults::FastDdsFaults(), Faults::FastDdsAnnouncementFaults(), Faults::CycloneDdsFaults()})
     {
         for (const Faults::Fault &fault : all)
         {
             std::ostringstream line;
-            line << fault.Name << ' ' << fault.Vendor << ' ' << (fault.Keys ? "keys" : "plain") << std::hex
-                 << std::setfill('0');
+            line << fault.Name << ' ' << fault.Vendor << std::hex << std::setfill('0');
             for (const auto &datagram : fault.Datagrams)
             {
                 line << ' ';

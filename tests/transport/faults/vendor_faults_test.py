@@ -3,8 +3,8 @@
 vendor does without the guard: a process of its own, which may end. Fails only if nodes with the guard end, or do not hear
 each other and a newcomer afterwards.
 
-Usage: vendor_faults_test.py DATAGRAMS ODD_KEYS PEER TRANSPORT,... PROGRAM...
-DATAGRAMS lists the faults; ODD_KEYS and PEER are programs of ../security, PROGRAMs the plain ones of ../../foreign.
+Usage: vendor_faults_test.py DATAGRAMS PEER TRANSPORT,... PROGRAM...
+DATAGRAMS lists the faults; PEER is a session, PROGRAMs are the plain ones of ../../foreign.
 Needs to make network namespaces; ends with 77 where it may not."""
 
 import pathlib
@@ -13,7 +13,6 @@ import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -27,28 +26,13 @@ LOOK_S = 2
 # A process that wants more ends.
 MOST_BYTES = 4 << 30
 AT_ONCE = 4
-# A file of profiles that defines transports replaces Rabit's, and so leaves the guard out.
-UNGUARDED = """<?xml version="1.0" encoding="UTF-8" ?>
-<profiles xmlns="http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles">
-  <transport_descriptors>
-    <transport_descriptor><transport_id>plain</transport_id><type>UDPv4</type></transport_descriptor>
-  </transport_descriptors>
-  <participant profile_name="unguarded" is_default_profile="true">
-    <rtps><userTransports><transport_id>plain</transport_id></userTransports>
-      <useBuiltinTransports>false</useBuiltinTransports></rtps>
-  </participant>
-</profiles>
-"""
-
-
 # Its last datagram is the goodbye.
 FORGED_GOODBYE = "CVE-2023-50257"
 
 
 class Fault:
     def __init__(self, line):
-        self.name, self.vendor, keys, *datagrams = line.split()
-        self.keys = keys == "keys"
+        self.name, self.vendor, *datagrams = line.split()
         self.datagrams = [bytes.fromhex(each) for each in datagrams]
         self.result = self.failure = None
 
@@ -112,31 +96,12 @@ def watch(process):
     return f"lives, and grows from {before} to {largest} MB" if largest > 2 * before else "lives"
 
 
-class Keys:
-    def __init__(self, odd_keys, folder):
-        self.odd_keys, self.fleet = odd_keys, pathlib.Path(folder) / "fleet"
-        subprocess.run([odd_keys, "init", self.fleet, "blue"], check=True)
-
-    def of(self, node, transport, domain):
-        subprocess.run([self.odd_keys, "add", self.fleet, node, transport, str(domain), "0", "365"], check=True)
-        return [self.fleet / node, "encrypt"]
-
-
-def without_guard(fault, domain, programs, plain):
-    """A participant of the vendor alone."""
-    odd_keys, peer = programs
-    bounded = ["prlimit", f"--as={MOST_BYTES}"]
-    with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
-        if fault.keys:
-            profiles = pathlib.Path(folder) / "profiles.xml"
-            profiles.write_text(UNGUARDED, encoding="ascii")
-            victim = processes.start(
-                [*bounded, peer, fault.vendor, "victim", domain, *Keys(odd_keys, folder).of("victim", fault.vendor, domain), "lo"],
-                env={"SECURED_PEER_BACKEND_CONFIG": str(profiles)})
-            victim.wait_for(re.compile("open").fullmatch, LIMIT_S)
-        else:
-            victim = processes.start([*bounded, plain[fault.vendor], domain, "read:State:string:reliable:volatile"])
-            victim.wait_for(re.compile("ready").fullmatch, LIMIT_S)
+def without_guard(fault, domain, plain):
+    """A program of the vendor alone."""
+    with harness.Processes() as processes:
+        victim = processes.start(["prlimit", f"--as={MOST_BYTES}", plain[fault.vendor], domain,
+                                  "read:State:string:reliable:volatile"])
+        victim.wait_for(re.compile("ready").fullmatch, LIMIT_S)
         fault.send(domain)
         return watch(victim)
 
@@ -144,29 +109,29 @@ def without_guard(fault, domain, programs, plain):
 class Unguarded:
     """Faults one after the other, each in a domain of its own."""
 
-    def __init__(self, faults, domain, programs, plain):
-        self.faults, self.domain, self.programs, self.plain = faults, domain, programs, plain
+    def __init__(self, faults, domain, plain):
+        self.faults, self.domain, self.plain = faults, domain, plain
 
     def run(self):
         for number, fault in enumerate(self.faults):
             try:
-                fault.result = without_guard(fault, self.domain + number, self.programs, self.plain)
+                fault.result = without_guard(fault, self.domain + number, self.plain)
             except Exception as error:  # the others go on
                 fault.result = f"not tried: {error}"
 
 
 class Guarded:
-    """Two nodes over a vendor, with keys or without, which get all faults, then meet a third one, and at last get goodbyes in
-    each other's names. They hear each other all the while, or again."""
+    """Two nodes over a vendor, with keys or without, which get all faults, then meet a third one. Those without keys at last get
+    goodbyes in each other's names. They hear each other all the while, or again."""
 
-    def __init__(self, faults, transport, keys, domain, programs):
-        self.faults, self.transport, self.keys, self.domain, self.programs = faults, transport, keys, domain, programs
+    def __init__(self, faults, transport, keys, domain, peer):
+        self.faults, self.transport, self.keys, self.domain, self.peer = faults, transport, keys, domain, peer
         self.failure = None
 
     def run(self):
         try:
-            with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
-                self.meet(processes, Keys(self.programs[0], folder))
+            with harness.Processes() as processes:
+                self.meet(processes)
         except Exception as error:  # the others go on
             self.failure = harness.reason(error)
 
@@ -175,11 +140,12 @@ class Guarded:
         # From the tenth on, every tenth sample is told of.
         node.wait_for(re.compile(f"heard {other} {(heard[-1] // 10 + 3) * 10 if heard else 20}").fullmatch, LIMIT_S)
 
-    def meet(self, processes, keys):
+    def start(self, processes, name):
+        return processes.start([self.peer, self.transport, name, self.domain, *(["fleet"] if self.keys else [])])
+
+    def meet(self, processes):
         names = ("first", "second")
-        nodes = [processes.start([self.programs[1], self.transport, name, self.domain,
-                                  *(keys.of(name, self.transport, self.domain) if self.keys else ["-", "encrypt"]), "lo"])
-                 for name in names]
+        nodes = [self.start(processes, name) for name in names]
         pairs = list(zip(nodes, reversed(names)))
         for node, other in pairs:
             self.hears_more(node, other)
@@ -190,11 +156,12 @@ class Guarded:
                     raise AssertionError(f"{name} ended with {node.exit_code(LIMIT_S)} after {fault.name}")
         for node, other in pairs:
             self.hears_more(node, other)
-        newcomer = processes.start([self.programs[1], self.transport, "newcomer", self.domain,
-                                    *(keys.of("newcomer", self.transport, self.domain) if self.keys else ["-", "encrypt"]), "lo"])
+        newcomer = self.start(processes, "newcomer")
         for node, name in zip(nodes, names):
             self.hears_more(node, "newcomer")
             self.hears_more(newcomer, name)
+        if self.keys:
+            return  # no datagram shows their participants
         self.forge_goodbyes()
         for node, other in pairs:
             gone = [when for when, text in node.lines if text == f"gone {other}"]
@@ -205,27 +172,26 @@ class Guarded:
     def forge_goodbyes(self):
         fault = next(fault for fault in self.faults if fault.name == FORGED_GOODBYE)
         *_, goodbye = fault.datagrams
-        forged = Fault(f"{fault.name} {fault.vendor} plain")
+        forged = Fault(f"{fault.name} {fault.vendor}")
         for name in prefixes(self.domain, 3, stranger=prefix_of(goodbye)):
             forged.datagrams.append(goodbye.replace(prefix_of(goodbye), name))
         forged.send(self.domain)
 
 
 def main():
-    datagrams, *programs = sys.argv[1:4]
-    transports = sys.argv[4].split(",")
-    plain = {("fastdds" if "fastdds" in path else "cyclonedds"): path for path in sys.argv[5:]}
+    datagrams, peer = sys.argv[1:3]
+    transports = sys.argv[3].split(",")
+    plain = {("fastdds" if "fastdds" in path else "cyclonedds"): path for path in sys.argv[4:]}
     harness.enter_namespace_or_skip()
     listed = subprocess.run([datagrams], check=True, capture_output=True, text=True).stdout
     faults = [Fault(line) for line in listed.splitlines()]
-    # Nothing leaves the guard out of a session over Cyclone DDS with keys.
-    installed = [fault for fault in faults if fault.vendor in transports and not (fault.keys and fault.vendor == "cyclonedds")]
+    installed = [fault for fault in faults if fault.vendor in transports]
     # Nodes get the faults of both vendors: the guard is the same.
-    guarded = [Guarded(faults, transport, keys, 60 + 2 * i + keys, programs)
+    guarded = [Guarded(faults, transport, keys, 60 + 2 * i + keys, peer)
                for i, transport in enumerate(transports) for keys in (False, True)]
-    harness.run_at_once([*guarded, *(Unguarded(installed[i::AT_ONCE], 1 + 10 * i, programs, plain) for i in range(AT_ONCE))])
+    harness.run_at_once([*guarded, *(Unguarded(installed[i::AT_ONCE], 1 + 10 * i, plain) for i in range(AT_ONCE))])
     for fault in installed:
-        print(f"{fault.vendor} {fault.name}{' (keys)' if fault.keys else ''}, without the guard: {fault.result}")
+        print(f"{fault.vendor} {fault.name}, without the guard: {fault.result}")
     for case in guarded:
         print(f"nodes over {case.transport}{' with keys' if case.keys else ''}: {case.failure or 'live and hear each other'}")
     sys.exit(1 if any(case.failure for case in guarded) else 0)

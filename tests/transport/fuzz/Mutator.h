@@ -1,4 +1,4 @@
-// Damages RTPS datagrams, at random and where it hurts.
+// Damages datagrams, at random and, where they are RTPS, where it hurts.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ class Mutator
 public:
     explicit Mutator(std::uint64_t seed) : _random(seed) {}
 
-    // Sets the datagrams to damage: at least one, each with an RTPS header.
+    // Sets the datagrams to damage: at least one, each at least as long as an RTPS header.
     void Learn(const std::vector<Datagram> &datagrams);
     // Returns one of the datagrams, damaged in one to four ways.
     Datagram Next();

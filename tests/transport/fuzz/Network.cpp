@@ -90,8 +90,14 @@ void Sniffer::Keep(std::span<const std::uint8_t> packet)
     constexpr std::size_t UdpHeader = 8;
     const std::size_t ipHeader = packet.size() >= 20 ? 4u * (packet[0] & 15u) : packet.size();
     constexpr std::uint8_t Udp = 17;
-    if (packet.size() < ipHeader + UdpHeader + 24 || packet[9] != Udp ||
-        std::memcmp(packet.data() + ipHeader + UdpHeader, "RTPS", 4) != 0)
+    if (packet.size() < ipHeader + UdpHeader + 24 || packet[9] != Udp)
+    {
+        return;
+    }
+    const auto content = packet.subspan(ipHeader + UdpHeader);
+    const bool isRtps = std::memcmp(content.data(), "RTPS", 4) == 0;
+    const bool isSealed = (content[0] & 0xc0) == 0x80;  // transport/envelope/Outer.h
+    if (!isRtps && !isSealed)
     {
         return;
     }
@@ -100,9 +106,10 @@ void Sniffer::Keep(std::span<const std::uint8_t> packet)
     const auto port = static_cast<std::uint16_t>(packet[ipHeader + 2] << 8 | packet[ipHeader + 3]);
     ++_destinations[{address, port}];
 
-    Datagram datagram(packet.begin() + static_cast<std::ptrdiff_t>(ipHeader + UdpHeader), packet.end());
-    std::vector<std::uint32_t> likeness = {port, static_cast<std::uint32_t>(datagram.size()), datagram[19]};
-    for (std::size_t at = 20; at + 12 <= datagram.size();)
+    Datagram datagram(content.begin(), content.end());
+    std::vector<std::uint32_t> likeness = {port, static_cast<std::uint32_t>(datagram.size()),
+                                           datagram[isRtps ? 19 : 0]};
+    for (std::size_t at = 20; isRtps && at + 12 <= datagram.size();)
     {
         const std::size_t length = datagram[at + 2] | static_cast<std::size_t>(datagram[at + 3]) << 8;
         likeness.push_back(datagram[at]);

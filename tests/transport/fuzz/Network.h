@@ -20,12 +20,12 @@ public:
     Sniffer(const Sniffer &) = delete;
     Sniffer &operator=(const Sniffer &) = delete;
 
-    // Reads the datagrams that came; waits at most this long for the first. Keeps RTPS alone, and only a
-    // few datagrams with the same submessages and size.
+    // Reads the datagrams that came; waits at most this long for the first. Keeps RTPS and sealed datagrams
+    // alone, and only a few with the same submessages and size.
     void Read(int milliseconds);
 
     const std::vector<Datagram> &Kept() const { return _kept; }
-    // Returns the addresses and ports that RTPS was sent to.
+    // Returns the addresses and ports that these were sent to.
     std::vector<sockaddr_in> Destinations() const;
 
 private:

@@ -7,8 +7,8 @@ Without an option everything is damaged but the content of the nodes' own sample
 --content: that too. Forged content of a sample with the right number cannot be told from honest content without a
 signature: a link that is told of another life of its receiver takes it for restarted, and messages may be in doubt. All
 others are delivered.
---keys: everything, of nodes that have keys, which the program RABIT makes: handshakes, tokens and what is encrypted as well. No
-message may be in doubt: whatever is forged is nobody's.
+--keys: everything, of nodes that have keys, which the program RABIT makes. No message may be in doubt: whatever is forged is
+nobody's.
 --memory: what a node may take at most; one under AddressSanitizer needs more.
 Needs to make network namespaces; ends with 77 where it may not."""
 
@@ -22,9 +22,9 @@ import tempfile
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path[:0] = [str(HERE.parents[1] / "integration"), str(HERE.parent / "security")]
+sys.path[:0] = [str(HERE.parent / "interop"), str(HERE.parents[1] / "integration")]
 import harness  # noqa: E402
-from interop_keys import make_keys  # noqa: E402
+import interop_keys  # noqa: E402
 
 # Only keeps a broken test from hanging.
 LIMIT_S = 300
@@ -91,7 +91,7 @@ def main():
     names = ("first", "second")
     with tempfile.TemporaryDirectory() as folder, harness.Processes() as processes:
         if options.keys:
-            make_keys(options.keys, pathlib.Path(folder), [(name, transport) for name in names], harness.domain())
+            interop_keys.make(options.keys, folder, names)
         save = os.environ.get("FUZZ_SAVE")
         keep = not options.content and not options.keys
         fuzzer = processes.start([options.fuzzer, "--count", count, "--seed", seed, *(["--keep-content"] if keep else []),

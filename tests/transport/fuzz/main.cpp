@@ -1,5 +1,5 @@
-// Records the RTPS traffic of nodes on loopback. Then sends damaged copies of it to all ports that the
-// traffic went to, for fuzz_test.py:
+// Records the traffic of nodes on loopback, which is RTPS or sealed. Then sends damaged copies of it to all
+// ports that the traffic went to, for fuzz_test.py:
 //   recording           all traffic from here on is recorded
 //   recorded N ports P  after a line on standard input: N datagrams are known, of P ports
 //   sent N of M         now and then
@@ -82,7 +82,10 @@ int Run(const Options &options)
     mutator.Learn(recorded);
     std::mt19937_64 random(options.Seed);
     KnownContent content;
-    content.Learn(recorded);
+    if (options.KeepContent)
+    {
+        content.Learn(recorded);
+    }
     std::uint64_t leftOut = 0;
     Sender sender;
     const std::uint64_t lostBefore = Sender::Dropped();

@@ -89,6 +89,21 @@ TEST_F(AuthorityTest, AParticipantWithTheNameInItsCertificateIsHandedOn)
     EXPECT_EQ(Handed.size(), 1u);
 }
 
+// It gets samples and repairs, also if it only reads.
+TEST_F(AuthorityTest, AParticipantWithTheNameInItsCertificateIsNoStranger)
+{
+    EXPECT_TRUE(Admit(ParticipantMessage()));
+    EXPECT_FALSE(Accounts->IsStranger(Sender));
+    EXPECT_TRUE(Admit(ParticipantMessage(Other)));
+    EXPECT_TRUE(Accounts->IsStranger(Other));
+}
+
+TEST_F(AuthorityTest, AParticipantWithTheNameInItsCertificateIsNoStrangerByItsCard)
+{
+    EXPECT_TRUE(Admit(ParticipantMessage(), RtpsGuard::Origin::Card));
+    EXPECT_FALSE(Accounts->IsStranger(Sender));
+}
+
 TEST_F(AuthorityTest, AParticipantWithAnotherNameIsRefused)
 {
     Name = "ground";
@@ -146,8 +161,11 @@ TEST_F(AuthorityTest, AForbiddenWriterBecomesAGapOfItsNumber)
         Announces(Rabit::Rtps::PublicationsWriter, 1, UserWriter, TopicParameter("Secret"));
     EXPECT_FALSE(Admit(announcement));
     ASSERT_EQ(Handed.size(), 1u);
+    // It names the reader: Cyclone DDS passes over others, and waits for the number for ever.
+    constexpr EntityId publicationsReader = 0x000003c7;
     const Bytes expected =
-        Join({Header(), Submessage(Gap, GapBody(1, 2, 0, Rabit::Rtps::PublicationsWriter))});
+        Join({Header(), Submessage(Gap, Join({Ids(publicationsReader, Rabit::Rtps::PublicationsWriter),
+                                              Sequence(1), Sequence(2), Bits(0)}))});
     ASSERT_EQ(Handed[0].size(), announcement.size());
     const std::size_t at = expected.size();
     EXPECT_TRUE(std::equal(expected.begin(), expected.end(), Handed[0].begin()));

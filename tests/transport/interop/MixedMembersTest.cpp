@@ -7,6 +7,7 @@
 #include <ostream>
 #include <string>
 
+#include "../common/TestMembers.h"
 #include "../conformance/ProcessHarness.h"
 #include "../conformance/Recorder.h"
 #include "../conformance/TestSample.h"
@@ -61,6 +62,31 @@ TEST_P(MixedMembers, ASampleArrives)
 TEST_P(MixedMembers, ALargeSampleArrives)
 {
     ExpectArrival(std::string(1'000'000, 'x'));
+}
+
+// The forbidden writer is announced first.
+TEST_P(MixedMembers, ATopicThatThePermissionsLackKeepsNoOtherOneBack)
+{
+    SampleRecorder secrets;
+    SampleRecorder poses;
+    auto restricted = Settings("uav1");
+    TestMembers fleet("fleet");
+    restricted.Member = fleet.Member("uav1", {{.Topic = "Pose", .MayWrite = true, .MayRead = true}});
+    const auto writing = Writer().Open(restricted, {});
+    const auto reading = Reader().Open(Settings("ground"), {});
+    const auto secret = writing->CreateWriter(TextTopic("Secret"), State(), {});
+    const auto pose = writing->CreateWriter(TextTopic("Pose"), State(), {});
+    const auto secretReader = reading->CreateReader(TextTopic("Secret"), State(), {}, secrets.Handler());
+    const auto poseReader = reading->CreateReader(TextTopic("Pose"), State(), {}, poses.Handler());
+    ASSERT_TRUE(_net.Until(
+        [&]
+        {
+            WriteOnceTaken(*secret, MakeSample(0, "secret"), 1);
+            WriteOnceTaken(*pose, MakeSample(0, "pose"), 1);
+            return poses.Count() > 0;
+        }));
+    EXPECT_EQ(secretReader->MatchedWriters(), 0);
+    EXPECT_EQ(secrets.Count(), 0u);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Nodes of this Debian beside nodes of the other one (12 and 13), over every pair of backends: what interop_test.py and
-secured_pairs_test.py do, the latter at both levels. With --arm64, beside nodes of Debian 12 for arm64 under qemu-user,
-whose unit tests are run first.
+../security/pairs_test.py do. With --arm64, beside nodes of Debian 12 for arm64 under qemu-user, whose unit tests are run first.
 
 Usage: versions_test.py [--arm64] RABIT NODE TRANSPORT...
 Makes a root of the other Debian and builds the node in it, which takes half an hour and more; with RABIT_OTHER_ROOT it
@@ -17,7 +16,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "security"), str(HERE.parents[1] / "integration")]
 import harness  # noqa: E402
 from interop_test import Row, print_table  # noqa: E402
-from secured_pairs_test import Fleet  # noqa: E402
+from pairs_test import Fleet  # noqa: E402
 
 AT_ONCE = 4  # pairs of nodes
 AT_ONCE_ARM64 = 1  # an emulated node takes about ten times the processor time
@@ -63,8 +62,7 @@ def compare(rabit, node, root, built_node, transports, at_once):
     rows = [labelled(Row(nodes, *pair, 7 * i), f"{pair} {name}")
             for i, (nodes, pair, name) in enumerate((nodes, pair, name) for pair in pairs for nodes, name in
                                                     (((here, there), "here, other"), ((there, here), "other, here")))]
-    fleets = [labelled(Fleet(rabit, (here, there), pair, level, 7 * i), f"{pair} here, other {level}")
-              for i, (pair, level) in enumerate((pair, level) for pair in pairs for level in ("encrypt", "sign"))]
+    fleets = [labelled(Fleet(rabit, (here, there), pair, 7 * i), f"{pair} here, other, with keys") for i, pair in enumerate(pairs)]
     failures = run(rows, at_once)
     print("By turns the first node is of this machine, and of the other root:")
     print_table(rows)

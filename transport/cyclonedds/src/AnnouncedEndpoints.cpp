@@ -18,8 +18,6 @@ using namespace Rtps;
 // OMG DDSI-RTPS 2.3, 9.6.2.2.1 and OMG DDS-XTypes 1.3, 7.6.3.3.5: bits of the set of endpoints.
 constexpr std::uint32_t Liveliness = 1u << 10 | 1u << 11;
 constexpr std::uint32_t TypeLookup = 1u << 12 | 1u << 13 | 1u << 14 | 1u << 15;
-// OMG DDS Security 1.1, 7.3.7.1
-constexpr std::uint32_t Secure = 0x0fff0000;
 
 // This vendor announces in little-endian.
 std::uint32_t Number(std::span<const std::uint8_t> bytes)
@@ -49,7 +47,7 @@ bool LeaveOut(std::span<std::uint8_t> payload)
                         isOfRabitNode = isOfRabitNode || (parameter.Id == Parameters::UserData &&
                                                           IsOfRabitNode(parameter.Value));
                     });
-    if (set.empty() || (Number(set) & Secure) != 0 || !isOfRabitNode)
+    if (set.empty() || !isOfRabitNode)
     {
         return false;
     }

@@ -8,7 +8,6 @@
 #include "Guid.h"
 #include "OpaqueType.h"
 #include "VendorTraffic.h"
-#include "common/SendingSamples.h"
 
 namespace Rabit::Cyclone
 {
@@ -137,7 +136,6 @@ WriteResult CycloneWriter::Send(const SampleEncoder &encoder, std::int64_t sourc
     // Unregistered as well: the vendor keeps nothing of such an instance once its readers know, not even for
     // late ones. Readers need not keep it for this writer either.
     sample->Header.statusinfo = dispose ? StatusDisposed | StatusUnregistered : 0u;
-    const SendingSamples sending;
     const dds_return_t result = dds_forwardcdr(_writer.Get(), &sample.release()->Header);
     if (result == DDS_RETCODE_TIMEOUT)
     {

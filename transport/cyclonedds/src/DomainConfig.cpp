@@ -24,11 +24,6 @@ constexpr int ParticipantsPerPeer = 16;
 constexpr std::size_t HeaderRoom = 100;
 // The vendor's default for the largest datagram of a repair.
 constexpr std::size_t LargestRepair = 1456;
-// Size of the protection of a submessage: SEC_PREFIX, SEC_BODY and SEC_POSTFIX. The vendor sends a
-// HEARTBEAT_FRAG behind each fragment of a sample, in a datagram of its own if the fragment leaves no room.
-constexpr std::size_t SubmessageProtection = 56;
-// Largest size of signatures, which the vendor adds to a message that is already full.
-constexpr std::size_t SecurityRoom = 256;
 
 // OMG DDSI-RTPS 2.3, 9.6.1.1
 int DiscoveryPort(int domain, int participant)
@@ -117,16 +112,12 @@ Rtps::RtpsGuard::Mode GuardMode(const TransportSettings &settings)
 {
     using Mode = Rtps::RtpsGuard::Mode;
     const std::string config = settings.BackendConfig.empty() ? "" : Read(settings.BackendConfig);
-    const auto names = [&](const char *element) { return config.find(element) != std::string::npos; };
-    return settings.Security        ? Mode::Protected
-           : names("Security>")     ? Mode::Secured
-           : names("SharedMemory>") ? Mode::StructureOnly
-                                    : Mode::Full;
+    return config.find("SharedMemory>") != std::string::npos ? Mode::StructureOnly : Mode::Full;
 }
 
 std::string MakeDomainConfig(const TransportSettings &settings, std::size_t added)
 {
-    const std::size_t largest = settings.MaxDatagram - (settings.Security ? SecurityRoom : 0) - added;
+    const std::size_t largest = settings.MaxDatagram - added;
     std::ostringstream xml;
     xml.imbue(std::locale::classic());  // the program's own may write 1400 as 1,400
     xml << "<Domain><General>";
@@ -144,7 +135,7 @@ std::string MakeDomainConfig(const TransportSettings &settings, std::size_t adde
         << (added > 0 ? "<MaxRexmitMessageSize>" + std::to_string(std::min(largest, LargestRepair)) +
                             "B</MaxRexmitMessageSize>"
                       : std::string())
-        << "<FragmentSize>" << largest - HeaderRoom - (settings.Security ? 2 * SubmessageProtection : 0)
+        << "<FragmentSize>" << largest - HeaderRoom
         << "B</FragmentSize></General>"
         // Between sessions that share a domain, the vendor delivers samples inside Write. So each session has
         // a domain of its own; only on the network it has the configured number.
@@ -159,6 +150,8 @@ std::string MakeDomainConfig(const TransportSettings &settings, std::size_t adde
     // as at a start, are repaired for all at once. A reader asks a writer by itself only if the writer has
     // not addressed it within 100 ms.
     xml << "</Discovery><Internal><GenerateKeyhash>true</GenerateKeyhash>"
+        // Datagrams are lost until they can be opened (VendorDomain::Hear).
+        << (added > 0 ? "<ControlTopic><Deaf>true</Deaf></ControlTopic>" : "")
         << "<HeartbeatInterval max=\"4s\" minsched=\"100ms\">100ms</HeartbeatInterval>"
         << "<NackDelay>1ms</NackDelay><PreEmptiveAckDelay>100ms</PreEmptiveAckDelay>"
         << "<RetransmitMerging>always</RetransmitMerging>"

@@ -6,10 +6,10 @@
 namespace Rabit::Cyclone
 {
 
-// Spreads a large sample with keys over time. The vendor sends its fragments as fast as it encrypts them;
-// Fast DDS decrypts more slowly, and the receiving socket's buffer holds 3.4 MB of them where the system
-// allows 4 MiB. A State is written with best effort, so one fragment that the buffer drops costs the whole
-// sample.
+// Spreads a large sample of a session with a member over time. The vendor sends its fragments as fast as they
+// are sealed. A receiver may open them more slowly, and its socket's buffer holds 3.4 MB of them where the
+// system allows 4 MiB. A State is written with best effort, so one fragment that the buffer drops costs the
+// whole sample.
 //
 // One for each sending thread. A pure state machine.
 class SampleBurst

@@ -55,7 +55,7 @@ void CheckSealable(const TransportSettings &settings)
     if (GuardMode(settings) != Rtps::RtpsGuard::Mode::Full)
     {
         throw TransportError("the configuration " + settings.BackendConfig +
-                                 " has Security or SharedMemory, by which datagrams would pass by the keys",
+                                 " has SharedMemory, by which datagrams would pass by the keys",
                              "backend_config");
     }
 }
@@ -65,15 +65,18 @@ SealedTraffic::SealedTraffic(const std::shared_ptr<FleetMember> &member, Envelop
 {
 }
 
-void SealedTraffic::Begin(std::span<const std::uint8_t> message)
+void SealedTraffic::Begin(const Envelope::RtpsHeader &vendor)
 {
-    // The meeting's thread may be faster than the vendor's.
-    if (_session.IsStarted() || message.size() < Rtps::RtpsHeaderSize || Rtps::IsCardMessage(message))
-    {
-        return;
-    }
-    const auto card = Rtps::WriteCardMessage({.From = Rtps::SenderOf(message)});
-    _session.Start(HeaderOf(message), HeaderOf(card), _calls);
+    const auto card = Rtps::WriteCardMessage({.From = Rtps::SenderOf(vendor)});
+    _session.Start(vendor, HeaderOf(card), _calls);
+}
+
+void SealedTraffic::Begin(const Rtps::GuidPrefix &own)
+{
+    // Of RTPS 2.1 and Eclipse Cyclone DDS (OMG DDSI-RTPS 2.3, 8.3.3.1).
+    Envelope::RtpsHeader header{'R', 'T', 'P', 'S', 2, 1, 1, 16};
+    std::copy(own.begin(), own.end(), header.begin() + Rtps::PrefixAt);
+    Begin(header);
 }
 
 RabitCycloneSealed SealedTraffic::Seal(std::span<const ddsrt_iovec_t> parts, const RabitCyclonePlace *to)
@@ -81,7 +84,11 @@ RabitCycloneSealed SealedTraffic::Seal(std::span<const ddsrt_iovec_t> parts, con
     thread_local std::vector<std::uint8_t> gathered;
     thread_local std::vector<std::uint8_t> sealed;
     const std::span<const std::uint8_t> message = Gathered(parts, gathered);
-    Begin(message);
+    // The meeting's thread may be faster than the vendor's.
+    if (!_session.IsStarted() && message.size() >= Rtps::RtpsHeaderSize && !Rtps::IsCardMessage(message))
+    {
+        Begin(HeaderOf(message));
+    }
     const std::optional<Rtps::Place> place =
         to == nullptr ? std::nullopt : std::optional<Rtps::Place>(ToPlace(*to));
     const auto contents =

@@ -27,8 +27,11 @@ public:
     // When this returns, Send is not in progress and will not be called. Seal and Open go on.
     void Stop() { _session.Stop(); }
 
+    // Begins the session of the domain's participant, unless its first message has begun it. Without
+    // multicast and peers there is no message before another node is known.
+    void Begin(const Rtps::GuidPrefix &own);
     // As RabitCycloneCalls::seal. Begins the session with the vendor's first RTPS message, whose header has
-    // the prefix of the domain's participant. A card that comes before it is not sent.
+    // the prefix of the domain's participant. A card that comes before the session is not sent.
     RabitCycloneSealed Seal(std::span<const ddsrt_iovec_t> parts, const RabitCyclonePlace *to);
     // Opens a datagram in place. Returns the size of the message at its beginning; 0: there is none.
     std::size_t Open(std::span<std::uint8_t> datagram, const Rtps::Place &from);
@@ -39,7 +42,7 @@ public:
     const Envelope::SealedSession &Session() const { return _session; }
 
 private:
-    void Begin(std::span<const std::uint8_t> message);
+    void Begin(const Envelope::RtpsHeader &vendor);
 
     const Envelope::SealedSession::Calls _calls;
     Envelope::SealedSession _session;

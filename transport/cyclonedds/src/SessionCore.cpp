@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "RemoteParticipant.h"
-#include "VendorLog.h"
 #include "common/RtpsReader.h"
 
 namespace Rabit::Cyclone
@@ -22,51 +21,14 @@ std::chrono::milliseconds AnswerGap(const TransportSettings &settings)
     return std::chrono::milliseconds(50 + std::hash<std::string>()(settings.Node) % 100);
 }
 
-// The vendor's security plugins are libraries that it loads by name.
-void AddSecurity(const TransportSecurity &security, dds_qos_t *qos)
-{
-    const auto add = [&](const std::string &name, const std::string &value)
-    { dds_qset_prop(qos, name.c_str(), value.c_str()); };
-    const auto addLibrary = [&](const std::string &part, const std::string &file, const std::string &function)
-    {
-        const std::string library = "dds.sec." + part + ".library.";
-        add(library + "path", "dds_security_" + file);
-        add(library + "init", "init_" + function);
-        add(library + "finalize", "finalize_" + function);
-    };
-    addLibrary("auth", "auth", "authentication");
-    addLibrary("access", "ac", "access_control");
-    addLibrary("crypto", "crypto", "crypto");
-    add("dds.sec.auth.identity_ca", "file:" + security.IdentityAuthority);
-    add("dds.sec.auth.identity_certificate", "file:" + security.Certificate);
-    add("dds.sec.auth.private_key", "file:" + security.PrivateKey);
-    if (!security.Revoked.empty())
-    {
-        add("org.eclipse.cyclonedds.sec.auth.crl", "file:" + security.Revoked);
-    }
-    add("dds.sec.access.permissions_ca", "file:" + security.PermissionsAuthority);
-    add("dds.sec.access.governance", "file:" + security.Governance);
-    add("dds.sec.access.permissions", "file:" + security.Permissions);
-}
-
 Entity MakeParticipant(const TransportSettings &settings, dds_domainid_t domain, bool hasCard)
 {
     const Qos qos = MakeQos();
     dds_qset_entity_name(qos.get(), settings.Node.c_str());
     const std::string data = MakeUserData(settings.Incarnation, hasCard);
     dds_qset_userdata(qos.get(), data.data(), data.size());
-    if (settings.Security)
-    {
-        AddSecurity(*settings.Security, qos.get());
-    }
-    const std::string what = "join domain " + std::to_string(settings.Domain);
-    if (!settings.Security)
-    {
-        return {dds_create_participant(domain, qos.get(), nullptr), what};
-    }
-    const VendorLogCapture capture;
-    const dds_entity_t participant = dds_create_participant(domain, qos.get(), nullptr);
-    return {participant, capture.FirstLine().empty() ? what : what + ": " + capture.FirstLine()};
+    return {dds_create_participant(domain, qos.get(), nullptr),
+            "join domain " + std::to_string(settings.Domain)};
 }
 
 // Call only from a listener of a built-in topic.
@@ -156,6 +118,7 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
     dds_guid_t guid;
     dds_get_guid(_participant.Get(), &guid);
     _own = Rtps::PrefixOf(ToWriterId(guid));
+    _domain.Begin(_own);
     const auto watch = [this](dds_entity_t topic, dds_on_data_available_fn onData)
     {
         const Listener listener = MakeListener(this);
@@ -244,21 +207,13 @@ void SessionCore::PeerAppeared(const Rtps::GuidPrefix &prefix, const dds_qos_t *
     dds_qget_entity_name(qos, &name);
     const ParticipantIdentity announced{name != nullptr ? name : "", *incarnation};
     dds_free(name);
-    // The vendor may have read a datagram before its sockets were watched.
-    if (!_domain.MayBe(prefix, announced.Node))
-    {
-        Log()->Impostor(announced.Node);
-        return;
-    }
     Appeared(prefix, announced, PlaceOf(prefix));
 }
 
 void SessionCore::PeerGone(const Rtps::GuidPrefix &prefix)
 {
     const ddsi_guid_t participant = ParticipantOf(prefix);
-    const bool isForgotten = _domain.WasForgotten(prefix);
-    const bool isSilent =
-        RabitCycloneLeaseHasExpired(&participant) || _domain.WasEnded(prefix) || isForgotten;
+    const bool isSilent = RabitCycloneLeaseHasExpired(&participant) || _domain.WasEnded(prefix);
     _domain.Gone(prefix);
     const auto how = isSilent ? PeerEvent::Kind::Lost : PeerEvent::Kind::Left;
     if (how == PeerEvent::Kind::Lost)
@@ -266,11 +221,7 @@ void SessionCore::PeerGone(const Rtps::GuidPrefix &prefix)
         _accounts->Left(prefix);
         _domain.Lost(prefix);
     }
-    const auto session = Gone(prefix, how);
-    if (isForgotten)
-    {
-        Log()->AuthenticationFailed(session != nullptr ? session->Node : "");
-    }
+    Gone(prefix, how);
 }
 
 }  // namespace Rabit::Cyclone

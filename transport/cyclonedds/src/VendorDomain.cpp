@@ -19,10 +19,9 @@
 #include "common/HeldDatagrams.h"
 #include "common/MulticastUse.h"
 #include "common/RtpsTraffic.h"
-#include "common/SendingSamples.h"
 #include "envelope/JoinMessages.h"
 #include "envelope/MergedDatagram.h"
-#include "rtps/DiscoverySubmessages.h"
+#include "envelope/SessionPlaces.h"
 
 namespace Rabit::Cyclone
 {
@@ -34,12 +33,9 @@ namespace
 constexpr dds_domainid_t FirstOther = 1000;
 // A host that is not listed is answered at the ports of this many participants.
 constexpr int PortsOfStranger = 4;
-
-// True if a datagram sent now carries samples.
-bool IsOfSamplesSent(std::span<const std::uint8_t> head)
-{
-    return SendingSamples::Now() || IsOfSamples(head);
-}
+// A byte to the own address wakes the vendor's receiving thread. It is sent again, since it may be lost.
+constexpr std::chrono::milliseconds WakeAgain{100};
+constexpr std::chrono::seconds LongestWake{10};
 
 bool IsSame(const RabitCyclonePlace &one, const RabitCyclonePlace &other)
 {
@@ -65,51 +61,49 @@ bool IsGroup(const DirectAnnouncements::Address &address)
 
 }  // namespace
 
-ddsi_guid_t VendorDomain::OwnParticipant()
-{
-    const std::lock_guard lock(_cardMutex);
-    return ParticipantOf(_announcement.empty() ? Rtps::GuidPrefix{} : Rtps::SenderOf(_announcement));
-}
-
-bool VendorDomain::HasKeysOf(const Rtps::GuidPrefix &participant)
-{
-    const ddsi_guid_t own = OwnParticipant();
-    const ddsi_guid_t peer = ParticipantOf(participant);
-    return RabitCycloneHasKeysOf(_watch, &own, &peer);
-}
-
-void VendorDomain::Ask(const Rtps::GuidPrefix &participant)
-{
-    const ddsi_guid_t own = OwnParticipant();
-    const ddsi_guid_t peer = ParticipantOf(participant);
-    RabitCycloneAsk(_watch, &own, &peer);
-}
-
-void VendorDomain::Forget(const Rtps::GuidPrefix &participant)
-{
-    // First of all, so that no announcement comes in between.
-    _goodbyes->Ignore(participant, std::chrono::steady_clock::now());
-    std::vector<std::uint8_t> goodbye;
-    {
-        const std::lock_guard lock(_cardMutex);
-        goodbye = Rtps::GoodbyeAfter(_announcement, participant);
-    }
-    SendCard(participant, goodbye);
-    SendCard(std::nullopt, goodbye);
-    const ddsi_guid_t guid = ParticipantOf(participant);
-    RabitCycloneForget(_watch, &guid);
-}
-
 void VendorDomain::SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram)
 {
     std::vector<RabitCycloneRoute> routes;
+    std::vector<Rtps::Place> places;
     {
+        const auto now = std::chrono::steady_clock::now();
         const std::lock_guard lock(_cardMutex);
-        routes = _cardRoutes.To(to, std::chrono::steady_clock::now());
+        places = _cardRoutes.HeardAt(to, now);
+        // A participant that was heard is no listed peer without a route: nothing needs to go to all.
+        if (!to || places.empty())
+        {
+            routes = _cardRoutes.To(to, now);
+        }
+    }
+    for (const Rtps::Place &heard : places)
+    {
+        const RabitCyclonePlace place = ToCyclonePlace(heard);
+        const bool isSent =
+            std::any_of(routes.begin(), routes.end(),
+                        [&place](const RabitCycloneRoute &route) { return IsSame(EndOf(route), place); });
+        if (!isSent && MayGo(this, &place, datagram.size(), false))
+        {
+            routes.push_back(RabitCycloneRouteTo(_watch, &place));
+        }
     }
     for (const RabitCycloneRoute &route : routes)
     {
         Send(route, RabitCycloneToHost, datagram);
+    }
+}
+
+void VendorDomain::NoteHeard(std::span<const std::uint8_t> datagram, const Rtps::HostAddress &host)
+{
+    if (!_meets || _multicast || !AnnouncingOf(datagram).Any)
+    {
+        return;
+    }
+    const auto announced = Envelope::ReadAnnouncedPlaces(datagram);
+    const auto at = announced.HasCard ? announced.DiscoveryAt(host) : std::nullopt;
+    if (at && !_meeting.IsSelf(Rtps::SenderOf(datagram)))
+    {
+        const std::lock_guard lock(_cardMutex);
+        _cardRoutes.NoteHeard(Rtps::SenderOf(datagram), *at, std::chrono::steady_clock::now());
     }
 }
 
@@ -138,16 +132,16 @@ std::vector<RabitCycloneRoute> VendorDomain::WaysOfSealed()
                       const auto address = std::to_array(route.address);
                       return _multicast && !IsGroup(address) && !_direct.MayGo(address);
                   });
-    std::vector<Rtps::HostAddress> strangers;
+    if (_multicast)
     {
-        const std::lock_guard lock(_cardMutex);
-        strangers = _strangers.Current(std::chrono::steady_clock::now());
+        return routes;
     }
-    for (const Rtps::HostAddress &host : strangers)
+    for (const Rtps::Place &stranger : _seal->Session().Strangers(std::chrono::steady_clock::now()))
     {
-        for (const std::uint16_t port : _usualPorts)
+        const auto ports = stranger.Port != 0 ? std::vector<std::uint16_t>{stranger.Port} : _usualPorts;
+        for (const std::uint16_t port : ports)
         {
-            const RabitCyclonePlace place = ToCyclonePlace({.Host = host, .Port = port});
+            const RabitCyclonePlace place = ToCyclonePlace({.Host = stranger.Host, .Port = port});
             if (std::none_of(routes.begin(), routes.end(),
                              [&place](const RabitCycloneRoute &route)
                              { return IsSame(EndOf(route), place); }))
@@ -228,7 +222,6 @@ void VendorDomain::Came(const Rtps::GuidPrefix &participant)
 // The vendor announces its participant at each address at which it has ever heard another one.
 void VendorDomain::Gone(const Rtps::GuidPrefix &participant)
 {
-    _authentication.Gone(participant);
     std::vector<RabitCyclonePlace> left;
     {
         const std::lock_guard lock(_cardMutex);
@@ -290,26 +283,6 @@ bool VendorDomain::MaySend(void *self, unsigned char *datagram, std::size_t size
         const std::lock_guard lock(domain._cardMutex);
         domain._cardRoutes.NoteForAll(*route, IsGroup(address), std::chrono::steady_clock::now());
     }
-    if (domain._secured)
-    {
-        const auto exchange = ReadKeyExchange({datagram, size});
-        {
-            const std::lock_guard lock(domain._cardMutex);
-            if (announcing.Alone)
-            {
-                domain._announcement.assign(datagram, datagram + size);
-            }
-            if (exchange)
-            {
-                domain._cardRoutes.Note(exchange->To, *route);
-            }
-        }
-        if (exchange)
-        {
-            domain._authentication.Sent(*exchange);
-            return !domain._keys.Put({datagram, size}, *exchange, *route);
-        }
-    }
     return true;
 }
 
@@ -324,7 +297,6 @@ bool VendorDomain::Hold(void *self, const unsigned char *datagram, std::size_t s
                HeldDatagrams::IpAndUdp + size + (domain._seal != nullptr ? domain._seal->MostAdded() : 0),
                [&domain, to = *route, bytes = std::vector<std::uint8_t>(datagram, datagram + size)]
                {
-                   const SendingSamples sending;
                    const RabitCyclonePlace place = EndOf(to);
                    if (!MayGo(&domain, &place, bytes.size(), true))
                    {
@@ -403,13 +375,13 @@ RabitCycloneSealed VendorDomain::Seal(void *self, const ddsrt_iovec_t *part, std
 void VendorDomain::OnSent(void *self, const unsigned char *head, std::size_t headSize, std::size_t size)
 {
     const auto &domain = *static_cast<const VendorDomain *>(self);
-    if (!IsOfSamplesSent({head, headSize}))
+    if (!IsOfSamples({head, headSize}))
     {
         domain._log->SentDiscovery(1, size);
         return;
     }
     domain._log->SentSamples(1, size);
-    if (domain._secured || domain._seal != nullptr)
+    if (domain._seal != nullptr)
     {
         thread_local SampleBurst burst;
         if (const auto pause = burst.Sent(size, std::chrono::steady_clock::now()); pause.count() > 0)
@@ -446,22 +418,24 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
                                      std::size_t capacity, const RabitCyclonePlace *from, bool direct)
 {
     auto &domain = *static_cast<VendorDomain *>(self);
+    if (domain._isDeaf)
+    {
+        const std::lock_guard lock(domain._deafMutex);
+        domain._readWhileDeaf = true;
+        domain._hasRead.notify_all();
+        return 0;
+    }
     const Rtps::Place source = from != nullptr ? ToPlace(*from) : Rtps::Place{};
     const Rtps::HostAddress &host = source.Host;
     if (domain._seal != nullptr)
     {
-        const bool isWakeUp = size == 1;
         size = domain._seal->Open({datagram, size}, source);
         if (size == 0)
         {
-            if (!domain._multicast && from != nullptr && !isWakeUp)
-            {
-                const std::lock_guard lock(domain._cardMutex);
-                domain._strangers.Heard(host, std::chrono::steady_clock::now());
-            }
             return domain.JoinDelivered({datagram, capacity}, 0);
         }
     }
+    domain.NoteHeard({datagram, size}, host);
     if (domain._meets && Rtps::IsCardMessage({datagram, size}))
     {
         if (!domain._meeting.Received({datagram, size}, host,
@@ -471,10 +445,6 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
         }
         return domain.JoinDelivered({datagram, capacity}, 0);
     }
-    if (domain._secured)
-    {
-        domain._keys.Came({datagram, size});
-    }
     const std::size_t alone = domain.Admit({datagram, capacity}, size, host);
     const std::size_t admitted = domain._meets && !IsOfSamples({datagram, alone})
                                      ? domain.JoinDelivered({datagram, capacity}, alone)
@@ -482,20 +452,6 @@ std::size_t VendorDomain::OnReceived(void *self, unsigned char *datagram, std::s
     if (IsOfSamples({datagram, admitted}))
     {
         return admitted;
-    }
-    if (domain._secured)
-    {
-        if (const auto exchange = ReadKeyExchange({datagram, admitted}))
-        {
-            if (domain._keys.IsForUs(*exchange))
-            {
-                domain._authentication.Received(*exchange);
-            }
-            if (!domain._keys.Received(*exchange))
-            {
-                return 0;
-            }
-        }
     }
     const Announcing announcing = AnnouncingOf({datagram, admitted});
     if (announcing.Alone && direct && from != nullptr)
@@ -517,37 +473,24 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       _log(log),
       _sending(std::move(sending)),
       _multicast(IsMulticastForData(settings)),
-      _secured(settings.Security.has_value()),
       _hasPeers(!settings.Peers.empty()),
       _meeting({.Period = settings.AnnouncementPeriod,
                 .Memory = _multicast ? settings.Memory : settings.Lease,
                 .IsMulticast = _multicast},
                turns),
       _cardRoutes(settings.AnnouncementPeriod),
-      _goodbyes(std::move(goodbyes)),
-      _accounts(std::move(accounts)),
       _usualPorts(UsualDiscoveryPorts(settings.Domain, PortsOfStranger)),
       // The vendor itself checks which fragments it has sent.
-      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Vendor::CycloneDds, _goodbyes,
-             _accounts),
-      _seal(MakeSeal(settings)),
-      _keys(turns, settings.MaxDatagram)
+      _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Vendor::CycloneDds,
+             std::move(goodbyes), std::move(accounts)),
+      _seal(MakeSeal(settings))
 {
-    if (_secured)
-    {
-        _keys.Start([this](const auto &route, auto datagram) { Send(route, RabitCycloneToHost, datagram); });
-    }
     _meets = GuardMode(settings) == Rtps::RtpsGuard::Mode::Full;
-    // The threads are made before the vendor calls this object: if one cannot be, nothing is to be undone.
+    // The thread is made before the vendor calls this object: if it cannot be, nothing is to be undone.
     if (_meets)
     {
         _meeting.Prepare();
         _guard.SetObserver(_meeting);
-    }
-    if (_secured)
-    {
-        _authentication.Prepare();
-        _guard.SetAuthentication(_authentication);
     }
     if (_seal != nullptr)
     {
@@ -557,13 +500,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
              { return write ? session.MayWrite(peer, topic) : session.MayRead(peer, topic); },
              .NameOf = [&session](const Rtps::GuidPrefix &peer) { return session.NameOf(peer); }});
     }
+    _isDeaf = _seal != nullptr;
     const std::string config = MakeDomainConfig(settings, _seal != nullptr ? _seal->MostAdded() : 0);
-    if (settings.Security && Id() != static_cast<dds_domainid_t>(settings.Domain))
-    {
-        throw TransportError("with security, Cyclone DDS can be in domain " +
-                                 std::to_string(settings.Domain) + " only once in a process",
-                             "security");
-    }
     VendorLog::Follow(Id(), log);
     dds_entity_t entity = 0;
     std::string said;
@@ -593,7 +531,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     _watch = RabitCycloneWatch({.argument = this,
                                 .isDiscovery =
                                     [](const unsigned char *head, std::size_t size) {
-                                        return !IsOfSamplesSent({head, size});
+                                        return !IsOfSamples({head, size});
                                     },
                                 .may = &MaySend,
                                 .holds = [] { return HeldDatagrams::OfThisThread() != nullptr; },
@@ -605,6 +543,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
                                 .seal = _seal != nullptr ? &Seal : nullptr,
                                 .sent = &OnSent,
                                 .received = &OnReceived});
+    CheckSecurity(settings);
     CheckSeal(settings);
     _meets = _meets && _watch != nullptr;
     if (_meets)
@@ -612,15 +551,6 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
         _meeting.Start({.Send = [this](const auto &to, auto datagram) { SendCard(to, datagram); },
                         .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
                         .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
-    }
-    if (_secured && _watch != nullptr)
-    {
-        _authentication.Start({.IsAuthenticated = [this](const auto &peer) { return HasKeysOf(peer); },
-                               .Ask = [this](const auto &peer) { Ask(peer); },
-                               .IsWaiting = [this](const auto &peer) { return _keys.IsWaiting(peer); },
-                               .AnswerTime = [this] { return _keys.AnswerTime(); },
-                               .Forget = [this](const auto &peer, auto /*number*/) { Forget(peer); },
-                               .Drop = [this](const auto &peer) { _keys.Forget(peer); }});
     }
     if (_watch == nullptr)
     {
@@ -645,20 +575,83 @@ std::unique_ptr<SealedTraffic> VendorDomain::MakeSeal(const TransportSettings &s
             .Log = [log = _log](const std::string &line) { log->Line(line); }});
 }
 
-void VendorDomain::CheckSeal(const TransportSettings &settings)
+void VendorDomain::End()
 {
-    const char *const why =
-        _watch == nullptr ? "its sockets cannot be watched" : RabitCyclonePassesBy(_watch);
-    if (_seal == nullptr || why == nullptr)
-    {
-        return;
-    }
     _entity.Reset();
     RabitCycloneUnwatch(_watch);
     VendorLog::Leave(Id());
+}
+
+void VendorDomain::CheckSecurity(const TransportSettings &settings)
+{
+    // The guard lets nothing of it pass: the node would hear nobody.
+    if (_watch != nullptr && RabitCycloneHasSecurity(_watch))
+    {
+        End();
+        throw TransportError("the Cyclone DDS configuration " + settings.BackendConfig +
+                                 " has Security, which nodes do not use: leave it out, and give the nodes "
+                                 "keys (rabit keys)",
+                             "backend_config");
+    }
+}
+
+void VendorDomain::CheckSeal(const TransportSettings &settings)
+{
+    if (_seal == nullptr)
+    {
+        return;
+    }
+    const char *const why =
+        _watch == nullptr ? "its sockets cannot be watched" : RabitCyclonePassesBy(_watch);
+    const bool hears = why == nullptr && Hear();
+    if (hears)
+    {
+        return;
+    }
+    End();
+    if (why == nullptr)
+    {
+        throw TransportError("Cyclone DDS cannot join domain " + std::to_string(settings.Domain) +
+                             ": its receiving thread does not answer");
+    }
     throw TransportError("the keys cannot protect all datagrams with the configuration " +
                              settings.BackendConfig + " of Cyclone DDS: " + why,
                          "backend_config");
+}
+
+bool VendorDomain::Hear()
+{
+    const auto end = std::chrono::steady_clock::now() + LongestWake;
+    bool hasRead = false;
+    std::unique_lock lock(_deafMutex);
+    // The thread may have told of a read before the last socket was watched.
+    _readWhileDeaf = false;
+    while (!hasRead && std::chrono::steady_clock::now() < end)
+    {
+        lock.unlock();
+        RabitCycloneWake(_watch);
+        lock.lock();
+        hasRead = _hasRead.wait_for(lock, WakeAgain, [this] { return _readWhileDeaf; });
+    }
+    lock.unlock();
+    if (!hasRead || dds_domain_set_deafmute(_entity.Get(), false, false, DDS_INFINITY) != DDS_RETCODE_OK)
+    {
+        return false;
+    }
+    _isDeaf = false;
+    return true;
+}
+
+void VendorDomain::Begin(const Rtps::GuidPrefix &own)
+{
+    if (_seal != nullptr)
+    {
+        _seal->Begin(own);
+    }
+    if (_meets)
+    {
+        _meeting.SetSelf(own);
+    }
 }
 
 void VendorDomain::Announce(const ddsi_guid_t &participant) const
@@ -676,9 +669,7 @@ bool VendorDomain::IsUnheard(const ddsi_guid_t &participant) const
 
 VendorDomain::~VendorDomain()
 {
-    _authentication.Stop();
     _meeting.Stop();
-    _keys.Stop();
     if (_seal != nullptr)
     {
         _seal->Stop();

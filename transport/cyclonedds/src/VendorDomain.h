@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "DirectAnnouncements.h"
@@ -19,13 +19,10 @@
 #include "RouteOrder.h"
 #include "SealedTraffic.h"
 #include "common/HardwareAddresses.h"
-#include "common/HeardStrangers.h"
-#include "common/KeyExchangeThread.h"
 #include "common/ProcessNumber.h"
 #include "common/RecentGoodbyes.h"
 #include "common/SendingTurn.h"
 #include "common/SessionLog.h"
-#include "guard/AuthenticationThread.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/CardRoutes.h"
 #include "rtps/MeetingThread.h"
@@ -49,6 +46,8 @@ public:
     // The domain's number in this process. It may differ from the one on the network; it does not if that is
     // free, so that a vendor's file that names the domain applies.
     dds_domainid_t Id() const { return _id.Get(); }
+    // The domain's participant exists: it can answer others before it has sent anything.
+    void Begin(const Rtps::GuidPrefix &own);
     // Announces a participant of the domain to all, now.
     void Announce(const ddsi_guid_t &participant) const;
     // True if a peer known to that participant has not shown yet that it knows the participant.
@@ -70,16 +69,6 @@ public:
     void Lost(const Rtps::GuidPrefix &participant);
     // True if the vendor was told here that the participant is gone, because it was silent.
     bool WasEnded(const Rtps::GuidPrefix &participant) const { return _meeting.WasEnded(participant); }
-    // The same, because it was not authenticated (guard/AuthenticationRetries.h).
-    bool WasForgotten(const Rtps::GuidPrefix &participant) const
-    {
-        return _authentication.WasForgotten(participant);
-    }
-    // True if a participant may call itself `node`: its certificate says so, or this session has no member.
-    bool MayBe(const Rtps::GuidPrefix &participant, const std::string &node) const
-    {
-        return _seal == nullptr || _seal->Session().NameOf(participant) == node;
-    }
 
 private:
     static bool MaySend(void *self, unsigned char *datagram, std::size_t size,
@@ -99,27 +88,30 @@ private:
     // Null: the session has no member. Throws TransportError.
     std::unique_ptr<SealedTraffic> MakeSeal(const TransportSettings &settings);
     // Throws TransportError if a datagram could pass by the seal; the domain is then gone.
+    // End the domain, and throw TransportError, if the configuration has DDS Security, or if the keys cannot
+    // protect all datagrams.
+    void CheckSecurity(const TransportSettings &settings);
     void CheckSeal(const TransportSettings &settings);
+    void End();
+    // With a seal the domain is deaf at first: what the vendor's receiving thread reads before the sockets
+    // are watched is lost. Ends that once the thread reads through OnReceived alone. Returns false if the
+    // thread does not answer.
+    bool Hear();
     // Bytes of a message that has at most `most` bytes when it is sent.
     std::size_t Unsealed(std::size_t most) const
     {
         return _seal == nullptr ? most : most - std::min(most, _seal->MostAdded());
     }
-    // The domain's participant; zero before it has announced itself.
-    ddsi_guid_t OwnParticipant();
-    // RabitCycloneHasKeysOf, RabitCycloneAsk
-    bool HasKeysOf(const Rtps::GuidPrefix &participant);
-    void Ask(const Rtps::GuidPrefix &participant);
-    // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
-    void Forget(const Rtps::GuidPrefix &participant);
     // Returns the size of the part of a datagram that the vendor may see.
     std::size_t Admit(std::span<std::uint8_t> buffer, std::size_t size, const Rtps::HostAddress &from);
     // Sends a datagram that is not counted yet.
     void Send(const RabitCycloneRoute &route, RabitCycloneTo to, std::span<const std::uint8_t> datagram);
     // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<Rtps::GuidPrefix> &to, std::span<const std::uint8_t> datagram);
-    // The ways by which the participant is announced, and without multicast those to the usual ports of
-    // strangers: the vendor's sockets that send receive nothing.
+    // Without multicast a node that lists no peers learns by an announcement where to ask for the card.
+    void NoteHeard(std::span<const std::uint8_t> datagram, const Rtps::HostAddress &host);
+    // The ways by which the participant is announced, and without multicast those to
+    // SealedSession::Strangers, or to their hosts' usual ports.
     std::vector<RabitCycloneRoute> WaysOfSealed();
     // Runs on the seal's thread.
     void SendSealed(std::span<const std::uint8_t> sealed);
@@ -133,26 +125,23 @@ private:
     const std::shared_ptr<SessionLog> _log;
     const std::shared_ptr<SendingTurn> _sending;
     const bool _multicast;  // reaches all peers but those that announce themselves to us alone
-    const bool _secured;
-    const bool _hasPeers;  // peers are listed; they may not hear the group
+    const bool _hasPeers;   // peers are listed; they may not hear the group
     std::atomic<bool> _meets{false};
     Rtps::MeetingThread _meeting;
     std::mutex _cardMutex;
     Rtps::CardRoutes<RabitCycloneRoute, RouteOrder> _cardRoutes;  // guarded by _cardMutex
     // The unicast addresses by which the vendor reaches each other participant; guarded by _cardMutex.
     std::map<Rtps::GuidPrefix, std::vector<RabitCyclonePlace>> _reached;
-    std::vector<std::uint8_t> _announcement;            // our last one; guarded by _cardMutex
     std::vector<std::vector<std::uint8_t>> _delivered;  // for the vendor; guarded by _cardMutex
     DirectAnnouncements _direct;
-    const std::shared_ptr<Rtps::RecentGoodbyes> _goodbyes;
-    const std::shared_ptr<Rtps::Ledger> _accounts;
     const std::vector<std::uint16_t> _usualPorts;  // the first ones of UsualDiscoveryPorts
-    Rtps::HeardStrangers _strangers;               // guarded by _cardMutex
-    Rtps::AuthenticationThread _authentication;
     Rtps::RtpsGuard _guard;
     HardwareAddresses _addresses;
     const std::unique_ptr<SealedTraffic> _seal;  // null: the session has no member
-    KeyExchangeThread<RabitCycloneRoute, RouteOrder> _keys;
+    std::atomic<bool> _isDeaf{false};
+    std::mutex _deafMutex;
+    std::condition_variable _hasRead;
+    bool _readWhileDeaf = false;  // guarded by _deafMutex
     Entity _entity;
 };
 

@@ -30,7 +30,8 @@ public:
     ~VendorLogCapture();
     VendorLogCapture(const VendorLogCapture &) = delete;
     VendorLogCapture &operator=(const VendorLogCapture &) = delete;
-    // The vendor's first line, or "".
+    // The vendor's first line, or "". Its warning about the element Deaf, which is ours (DomainConfig.cpp),
+    // is left out.
     const std::string &FirstLine() const { return _firstLine; }
     void Add(const std::string &line);
 

@@ -8,6 +8,7 @@
 #include <dds/ddsi/q_addrset.h>
 #include <dds/ddsi/q_rtps.h>
 #include <dds/ddsi/q_thread.h>
+#include <dds/ddsrt/time.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -425,6 +426,54 @@ static void CopyLocator(const ddsi_xlocator_t *locator, void *argument)
     add_xlocator_to_addrset(copy->domain, copy->to, locator);
 }
 
+struct Host
+{
+    bool isFound;
+    ddsi_xlocator_t locator;
+};
+
+static void NoteHost(const ddsi_xlocator_t *locator, void *argument)
+{
+    struct Host *host = argument;
+    if (locator->c.kind == NN_LOCATOR_KIND_UDPv4 && !IsGroup(&locator->c))
+    {
+        host->isFound = true;
+        host->locator = *locator;
+    }
+}
+
+/* A thread of the vendor's may be about to read a datagram by the former function. A domain with keys is deaf
+ * meanwhile. */
+static void WatchReading(const struct Watch *watch, ddsi_tran_conn_t connection)
+{
+    if (connection->m_read_fn == watch->read)
+    {
+        __atomic_store_n(&connection->m_read_fn, ReadAndTell, __ATOMIC_RELEASE);
+    }
+}
+
+/* For a network without multicast, and without peers, the vendor announces its participant at each port that
+ * a participant of this host may have. These are some hundred datagrams, and use up what strangers may be
+ * sent. */
+static void AnnounceToListedAlone(struct ddsi_domaingv *domain)
+{
+    if (domain->config.peers != NULL)
+    {
+        return;
+    }
+    /* Each port is removed while no set is locked. */
+    for (int i = 0; i <= UINT16_MAX; ++i)
+    {
+        struct Host host = {.isFound = false};
+        addrset_forall(domain->as_disc, NoteHost, &host);
+        if (!host.isFound)
+        {
+            return;
+        }
+        remove_from_addrset(domain, domain->as_disc, &host.locator);
+    }
+}
+
 void *RabitCycloneWatch(struct RabitCycloneCalls calls)
 {
     struct ddsi_domaingv *domain = ddsrt_atomic_ldvoidp(&lookup_thread_state()->gv);
@@ -440,6 +489,7 @@ void *RabitCycloneWatch(struct RabitCycloneCalls calls)
     watch->write = domain->xmit_conns[0]->m_write_fn;
     watch->read = domain->disc_conn_uc->m_read_fn;
     watch->calls = calls;
+    AnnounceToListedAlone(domain);
     watch->listed = new_addrset();
     struct Copy copy = {domain, watch->listed};
     addrset_forall(domain->as_disc, CopyLocator, &copy);
@@ -455,8 +505,11 @@ void *RabitCycloneWatch(struct RabitCycloneCalls calls)
             domain->xmit_conns[i]->m_write_fn = WriteAndTell;
         }
     }
-    /* A thread of the vendor's may be about to read another participant's datagram: either function is
-     * correct for it. */
+    /* The vendor reads from the sockets that send as well (OpenDDS answers to them). */
+    for (int i = 0; i < domain->n_interfaces; ++i)
+    {
+        WatchReading(watch, domain->xmit_conns[i]);
+    }
     ddsi_tran_conn_t reading[] = {domain->disc_conn_mc, domain->disc_conn_uc, domain->data_conn_mc,
                                   domain->data_conn_uc};
     for (size_t i = 0; i < sizeof reading / sizeof reading[0]; ++i)
@@ -465,10 +518,7 @@ void *RabitCycloneWatch(struct RabitCycloneCalls calls)
         {
             continue;
         }
-        if (reading[i]->m_read_fn == watch->read)
-        {
-            __atomic_store_n(&reading[i]->m_read_fn, ReadAndTell, __ATOMIC_RELEASE);
-        }
+        WatchReading(watch, reading[i]);
         /* The vendor sends nothing by these sockets. */
         if (calls.seal != NULL && reading[i]->m_write_fn == watch->write)
         {
@@ -482,7 +532,8 @@ static bool IsEachWatched(const struct ddsi_domaingv *domain)
 {
     for (int i = 0; i < domain->n_interfaces; ++i)
     {
-        if (domain->xmit_conns[i] == NULL || domain->xmit_conns[i]->m_write_fn != WriteAndTell)
+        if (domain->xmit_conns[i] == NULL || domain->xmit_conns[i]->m_write_fn != WriteAndTell ||
+            domain->xmit_conns[i]->m_read_fn != ReadAndTell)
         {
             return false;
         }
@@ -497,6 +548,16 @@ static bool IsEachWatched(const struct ddsi_domaingv *domain)
         }
     }
     return true;
+}
+
+bool RabitCycloneHasSecurity(const void *watch)
+{
+#ifdef DDS_HAS_SECURITY
+    return RabitCycloneDomainOf(watch)->config.omg_security_configuration != NULL;
+#else
+    (void)watch;
+    return false;
+#endif
 }
 
 const char *RabitCyclonePassesBy(const void *watch)
@@ -520,21 +581,15 @@ const char *RabitCyclonePassesBy(const void *watch)
     {
         return "it has a MonitorPort";
     }
-    /* At the end of its deafness the vendor opens further sockets. */
-    if (config->initial_deaf)
+    /* What comes before all sockets are watched must be lost. */
+    if (!config->initial_deaf || config->initial_deaf_mute_reset != DDS_INFINITY)
     {
-        return "it is Deaf at first";
+        return "its ControlTopic lets datagrams in before they are checked";
     }
 #ifdef DDS_HAS_SHM
     if (config->enable_shm)
     {
         return "it has SharedMemory";
-    }
-#endif
-#ifdef DDS_HAS_SECURITY
-    if (config->omg_security_configuration != NULL)
-    {
-        return "it has Security";
     }
 #endif
     return IsEachWatched(domain) ? NULL : "a socket is of another kind";

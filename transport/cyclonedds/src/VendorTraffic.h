@@ -82,11 +82,14 @@ extern "C"
                            const struct RabitCyclonePlace *from, bool direct);
     };
 
-    /* Watches the domain that this thread has just created, until it is deleted. NULL if that fails. Pass the
+    /* Watches the domain that this thread has just created, until it is deleted. From then on the domain
+       announces itself to groups, listed peers and hosts that were heard alone. NULL if that fails. Pass the
        result to RabitCycloneUnwatch after the domain was deleted. */
     void *RabitCycloneWatch(struct RabitCycloneCalls calls);
     void RabitCycloneUnwatch(void *watch);
     struct ddsi_domaingv *RabitCycloneDomainOf(const void *watch);
+    /* Whether the domain's configuration has DDS Security. */
+    bool RabitCycloneHasSecurity(const void *watch);
     /* Why datagrams may pass by the watch, as part of a sentence about the domain's configuration; NULL if
        none can. */
     const char *RabitCyclonePassesBy(const void *watch);
@@ -107,7 +110,7 @@ extern "C"
                                      void (*found)(const struct RabitCycloneRoute *route, void *argument),
                                      void *argument);
 
-    /* Sends one zero byte to the own discovery address, so that a receiving thread calls `received`. */
+    /* Sends one zero byte to the own discovery address, so that the receiving thread calls `received`. */
     void RabitCycloneWake(const void *watch);
 
     /* Announces an own participant of a watched domain to all, now. */
@@ -115,17 +118,6 @@ extern "C"
     /* True if a peer known to the participant has not answered yet the announcements of its writers, as a
        peer that knows us does. */
     bool RabitCycloneIsUnheard(const void *watch, const ddsi_guid_t *participant);
-
-    /* True if own and other participant have each other's keys, as far as the other one has shown: it has
-       acknowledged the own one's protected discovery since they met, and since RabitCycloneAsk. */
-    bool RabitCycloneHasKeysOf(const void *watch, const ddsi_guid_t *own, const ddsi_guid_t *peer);
-    /* Asks the other participant to acknowledge the own one's protected discovery. The vendor repeats the
-       heartbeat until it does, and takes no acknowledgement without its keys. Not with the vendor's locks
-       held. */
-    void RabitCycloneAsk(const void *watch, const ddsi_guid_t *own, const ddsi_guid_t *peer);
-    /* Makes the vendor forget another participant, as if its lease had run out. Not with the vendor's locks
-       held. */
-    void RabitCycloneForget(const void *watch, const ddsi_guid_t *peer);
 
     /* Announces own participants at that address no more, unless it is one of the domain's listed peers. */
     void RabitCycloneAnnounceNoMoreTo(const void *watch, const struct RabitCyclonePlace *place);

@@ -27,18 +27,16 @@ void AcknowledgementTranslator::Translate(std::span<std::uint8_t> datagram)
 {
     const std::lock_guard lock(_mutex);
     GuidPrefix sender = SenderOf(datagram);
-    bool isSigned = false;
     VisitSubmessages(datagram,
                      [&](const Submessage &submessage)
                      {
-                         isSigned = isSigned || IsSecure(submessage.Kind);  // as the remaining ones may be
                          if (submessage.Kind == SubmessageKind::InfoSource)
                          {
                              sender = PrefixOf(submessage.Body().subspan(PrefixAt));
                          }
                          const bool acknowledges = submessage.Kind == SubmessageKind::AckNack ||
                                                    submessage.Kind == SubmessageKind::NackFrag;
-                         if (acknowledges && !isSigned)
+                         if (acknowledges)
                          {
                              Translate(submessage, sender);
                          }

@@ -29,8 +29,8 @@ public:
     // Converts requests for all samples into the vendor's form, and gives all acknowledgements and fragment
     // requests in a datagram counts of our own. These rise as the sender's do. If a reader that had
     // acknowledged something requests all, the counts of all readers of its participant start anew, above all
-    // that were given. A count far below the last one is treated as news as well. Submessages that DDS
-    // Security may have signed are unchanged. The datagram must be sound (RtpsGuard.h).
+    // that were given. A count far below the last one is treated as news as well. The datagram must be
+    // sound (RtpsGuard.h).
     void Translate(std::span<std::uint8_t> datagram);
 
     // Bounded: forgetting an exchange costs no more than needless repairs.

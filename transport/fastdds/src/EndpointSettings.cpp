@@ -23,19 +23,6 @@ void Apply(const TopicDescription &topic, const TopicQos &qos, rtps::EndpointAtt
         qos.Durability == Durability::TransientLocal ? rtps::TRANSIENT_LOCAL : rtps::VOLATILE;
 }
 
-// The names for which the vendor's access control checks the permissions; it has no other source.
-void AddNames(const TopicDescription &topic, const std::vector<std::string> &partitions,
-              rtps::PropertyPolicy &properties)
-{
-    properties.properties().emplace_back("topic_name", topic.Name);
-    std::string names = partitions.empty() ? "" : partitions.front();
-    for (std::size_t i = 1; i < partitions.size(); ++i)
-    {
-        names += ";" + partitions[i];
-    }
-    properties.properties().emplace_back("partitions", names);
-}
-
 template <typename EndpointQos>
 void ApplyQos(const TopicQos &qos, const std::vector<std::string> &partitions, EndpointQos &result)
 {
@@ -58,12 +45,10 @@ TopicNames NamesOf(const TopicDescription &topic)
     return {.Topic = topic.Name, .Type = topic.TypeName, .HasKey = topic.KeyOf != nullptr};
 }
 
-rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos,
-                                            const std::vector<std::string> &partitions)
+rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos)
 {
     rtps::WriterAttributes attributes;
     Apply(topic, qos, attributes.endpoint);
-    AddNames(topic, partitions, attributes.endpoint.properties);
     // The vendor's defaults (3 s, 5 ms) suit a wire that loses nothing: here they would make every repair,
     // and the end of every replay, seconds late.
     SetPace(attributes, WriterPace{.HeartbeatMs = 20, .FirstHeartbeatMs = 5, .NackResponseMs = 1});
@@ -78,12 +63,10 @@ dds::WriterQos MakeWriterQos(const TopicQos &qos, const std::vector<std::string>
     return result;
 }
 
-rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const TopicQos &qos,
-                                            const std::vector<std::string> &partitions)
+rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const TopicQos &qos)
 {
     rtps::ReaderAttributes attributes;
     Apply(topic, qos, attributes.endpoint);
-    AddNames(topic, partitions, attributes.endpoint.properties);
     SetPace(attributes, ReaderPace{.HeartbeatResponseMs = 1, .FirstAcknowledgementMs = 10});
     return attributes;
 }

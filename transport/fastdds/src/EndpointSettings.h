@@ -10,12 +10,10 @@ namespace Rabit::FastDds
 
 TopicNames NamesOf(const TopicDescription &topic);
 
-rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos,
-                                            const std::vector<std::string> &partitions);
+rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos);
 dds::WriterQos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions);
 
-rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const TopicQos &qos,
-                                            const std::vector<std::string> &partitions);
+rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const TopicQos &qos);
 dds::ReaderQos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions);
 
 WriterId ToWriterId(const rtps::GUID_t &guid);

@@ -27,7 +27,7 @@ FastDdsReader::FastDdsReader(std::shared_ptr<SessionCore> core, const TopicDescr
                                           { log->MalformedSample(name, "it is larger than 64 MiB"); })),
       _history(MakeHistoryAttributes())
 {
-    auto attributes = MakeReaderAttributes(topic, qos, partitions);
+    auto attributes = MakeReaderAttributes(topic, qos);
     _reader = MakeReader(_core->Participant(), attributes, _pool, _history, *this);
     if (_reader == nullptr)
     {

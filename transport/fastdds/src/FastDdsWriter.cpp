@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "EndpointSettings.h"
-#include "common/SendingSamples.h"
 
 namespace Rabit::FastDds
 {
@@ -22,7 +21,7 @@ FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescr
       _pool(std::make_shared<PayloadPool>([] {})),
       _history(qos.Depth, qos.Durability == Durability::TransientLocal, _pool)
 {
-    auto attributes = MakeWriterAttributes(topic, qos, partitions);
+    auto attributes = MakeWriterAttributes(topic, qos);
     _writer = MakeWriter(_core->Participant(), attributes, _pool, _history, *this);
     if (_writer == nullptr)
     {
@@ -118,7 +117,6 @@ WriteResult FastDdsWriter::SendEncoded(PayloadPool::Buffer buffer, std::uint32_t
     {
         _writer->reader_data_filter(this);
     }
-    const SendingSamples sending;
     const bool added = _history.Add(*change, params, deadline);
     _targets = nullptr;
     if (!added)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <initializer_list>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -11,7 +10,6 @@
 #include "AcknowledgementTranslator.h"
 #include "AnnouncementPace.h"
 #include "HeartbeatPace.h"
-#include "KeyAddressees.h"
 #include "OutgoingMessage.h"
 #include "RequestPace.h"
 #include "ShortenedDatagram.h"
@@ -19,10 +17,8 @@
 #include "VendorInput.h"
 #include "common/HeldDatagrams.h"
 #include "common/RtpsTraffic.h"
-#include "common/RtpsWriter.h"
-#include "common/SendingSamples.h"
+#include "envelope/SessionPlaces.h"
 #include "rtps/CardMessage.h"
-#include "rtps/DiscoverySubmessages.h"
 
 namespace Rabit::FastDds
 {
@@ -47,7 +43,7 @@ constexpr std::chrono::milliseconds SocketTimeout{100};
 // that chooses and counts what is sent. It is held while a datagram goes to the sockets, the meeting
 // (MeetingThread::Sending), OnSent and AnnounceAt, but not while a datagram is sealed, which takes 50 us.
 // Each writer of the vendor sends its datagrams one after the other, so they keep their order. No other
-// callback is called with it held: a key exchange, for instance, may send on the thread that puts it.
+// callback is called with it held.
 class GuardedUdp final : public ChainedUdp
 {
 public:
@@ -56,23 +52,10 @@ public:
           _descriptor(descriptor),
           _guard(descriptor.Chosen().Mode, descriptor.Chosen().AnnouncementPeriod, RtpsGuard::Vendor::FastDds,
                  descriptor.Chosen().Goodbyes, descriptor.Chosen().Accounts),
-          _input(descriptor.Chosen().GroupPort,
-                 AwaitsProtectedAnnouncements && descriptor.Chosen().Authentication != nullptr),
+          _input(descriptor.Chosen().GroupPort),
           _output(_descriptor.Chosen(), _guard, *low_level_transport_, _sending),
           _announcements(descriptor.Chosen().AnnouncementPeriod, descriptor.Chosen().Meeting != nullptr)
     {
-        if (Keys() != nullptr)
-        {
-            Keys()->Start(
-                [this](const Route &route, std::vector<std::uint8_t> &datagram)
-                {
-                    while (EndsLikeStatistics(datagram))
-                    {
-                        AppendSubmessageHeader(datagram, SubmessageKind::Pad, 0);
-                    }
-                    SendTo({route}, datagram);
-                });
-        }
         if (Envelope::SealedSession *const seal = Seal())
         {
             _guard.SetAuthority({.May = [seal](const auto &peer, bool write, auto topic)
@@ -82,25 +65,11 @@ public:
         if (MeetingThread *const meeting = Meeting())
         {
             _guard.SetObserver(*meeting);
+            meeting->SetSelf(SenderOf(_descriptor.Chosen().Header));
             meeting->Start(
                 {.Send = [this](const auto &to, auto datagram) { SendCard(to, datagram); },
                  .Deliver = [this](const auto &from, auto datagram) { DeliverCard(from, datagram); },
                  .LastHeard = [this](const auto &peer) { return _guard.LastHeard(peer); }});
-        }
-        if (AuthenticationThread *const authentication = Authentication())
-        {
-            _guard.SetAuthentication(*authentication);
-            authentication->Start({.IsAuthenticated =
-                                       [this](const auto &peer)
-                                   {
-                                       const GuidPrefix own = _input.OwnPrefix();
-                                       return own != GuidPrefix{} && KeyAddressees::HasKeysOf(own, peer);
-                                   },
-                                   .Ask = nullptr,
-                                   .IsWaiting = [this](const auto &peer) { return Keys()->IsWaiting(peer); },
-                                   .AnswerTime = [this] { return Keys()->AnswerTime(); },
-                                   .Forget = [this](const auto &peer, auto number) { Forget(peer, number); },
-                                   .Drop = [this](const auto &peer) { Keys()->Forget(peer); }});
         }
         // The vendor has no socket yet.
         if (Envelope::SealedSession *const seal = Seal())
@@ -120,17 +89,9 @@ public:
         {
             seal->Stop();
         }
-        if (AuthenticationThread *const authentication = Authentication())
-        {
-            authentication->Stop();
-        }
         if (MeetingThread *const meeting = Meeting())
         {
             meeting->Stop();
-        }
-        if (Keys() != nullptr)
-        {
-            Keys()->Stop();
         }
     }
 
@@ -163,12 +124,7 @@ public:
         thread_local std::vector<std::uint8_t> copy;
         ShortenedDatagram datagram(whole, copy);
         _guard.Sending(datagram.Bytes());
-        OutgoingMessage message = ReadOutgoing(datagram.Bytes());
-        message.HasSamples = message.HasSamples || SendingSamples::Now();
-        if (!message.HasSamples && PutExchange(sender, datagram.Bytes(), begin, end))
-        {
-            return true;
-        }
+        const OutgoingMessage message = ReadOutgoing(datagram.Bytes());
         if (message.Announcement)
         {
             _input.NoteOwn(datagram.Bytes());
@@ -245,16 +201,12 @@ public:
             datagram = Seal()->Open(datagram, PlaceOf(remote), now);
             if (datagram.empty())
             {
-                if (!_descriptor.Chosen().SampleGroup)
-                {
-                    const std::lock_guard lock(_sending);
-                    _output.HeardStranger(HostOf(remote), now);
-                }
                 return;
             }
         }
+        NoteHeard(datagram, remote);
         const Receiver receiver{next, local, remote};
-        if (Meeting() != nullptr || Authentication() != nullptr)
+        if (Meeting() != nullptr)
         {
             _input.NoteReceiver(receiver);
         }
@@ -270,19 +222,11 @@ public:
             }
             return;
         }
-        if (Keys() != nullptr)
-        {
-            Keys()->Came(datagram);
-        }
         const auto handOn = [&](std::span<std::uint8_t> admitted)
         {
             _translator.Translate(admitted);
-            if (!NoteExchange(admitted))
-            {
-                return;
-            }
             NoteAcknowledgements(admitted);
-            _input.Deliver(receiver, admitted);
+            VendorInput::HandOn(receiver, admitted);
         };
         if (!_guard.Admit(datagram, HostOf(remote), std::chrono::steady_clock::now(), std::cref(handOn)))
         {
@@ -292,28 +236,11 @@ public:
         {
             _descriptor.Chosen().Announce();
         }
-        _input.Introduce(datagram);
     }
 
 private:
-    using TimePoint = std::chrono::steady_clock::time_point;
-
     Envelope::SealedSession *Seal() const { return _descriptor.Chosen().Seal.get(); }
     MeetingThread *Meeting() const { return _descriptor.Chosen().Meeting.get(); }
-    AuthenticationThread *Authentication() const { return _descriptor.Chosen().Authentication.get(); }
-    // Makes the vendor forget a participant, and the participant this node. Runs on a thread without locks.
-    void Forget(const GuidPrefix &peer, std::int64_t number)
-    {
-        const std::vector<std::uint8_t> own = _input.OwnAnnouncement();
-        // First of all, so that no announcement comes in between.
-        _descriptor.Chosen().Goodbyes->Ignore(peer, std::chrono::steady_clock::now());
-        const auto ours = GoodbyeAfter(own, peer);
-        SendCard(peer, ours);
-        SendCard(std::nullopt, ours);
-        auto theirs = GoodbyeOf(peer, own, number);
-        _input.Forget(peer, theirs);
-    }
-    KeyThread *Keys() const { return _descriptor.Chosen().Keys.get(); }
     // True if the group does not reach all: peers are listed, or, for what introduces a SealedSession, known.
     bool HasOtherWaysToAll() const
     {
@@ -336,21 +263,23 @@ private:
     // Runs on the meeting's thread, or on that of the session's holder (DiscoveryTurns).
     void SendCard(const std::optional<GuidPrefix> &to, std::span<const std::uint8_t> datagram)
     {
-        std::vector<Route> routes;
+        const auto now = std::chrono::steady_clock::now();
+        std::unique_lock lock(_sending);
+        _output.SendCard(to, datagram, now, now + SocketTimeout, lock);
+    }
+    // Without multicast a node that lists no peers learns by an announcement where to ask for the card.
+    void NoteHeard(std::span<const std::uint8_t> datagram, const rtps::Locator_t &remote)
+    {
+        if (Meeting() == nullptr || _descriptor.Chosen().SampleGroup || !AnnouncingOf(datagram).Any)
+        {
+            return;
+        }
+        const auto announced = Envelope::ReadAnnouncedPlaces(datagram);
+        const auto at = announced.HasCard ? announced.DiscoveryAt(HostOf(remote)) : std::nullopt;
+        if (at && !Meeting()->IsSelf(SenderOf(datagram)))
         {
             const std::lock_guard lock(_sending);
-            routes = _output.RoutesTo(to, std::chrono::steady_clock::now());
-        }
-        SendTo(routes, datagram);
-    }
-    void SendTo(const std::vector<Route> &routes, std::span<const std::uint8_t> datagram)
-    {
-        const auto timeout = std::chrono::steady_clock::now() + SocketTimeout;
-        std::unique_lock lock(_sending);
-        for (const auto &[sender, destination] : routes)
-        {
-            _chosen.assign(1, destination);
-            _output.Send(sender, _chosen, datagram, false, timeout, lock);
+            _output.NoteHeard(SenderOf(datagram), *at, std::chrono::steady_clock::now());
         }
     }
     // Runs on the thread of the SealedSession.
@@ -391,42 +320,6 @@ private:
                               _output.Send(sender, destinations, bytes, true, now + SocketTimeout, lock);
                           });
     }
-    // Takes a datagram of a key exchange, for each of its destinations. Returns false if it should be sent
-    // unchanged; then no destination was passed over.
-    bool PutExchange(rtps::SenderResource *sender, std::span<const std::uint8_t> datagram,
-                     rtps::LocatorsIterator &begin, const rtps::LocatorsIterator &end)
-    {
-        const auto what = Keys() != nullptr ? ReadKeyExchange(datagram) : std::nullopt;
-        for (; what && begin != end; ++begin)
-        {
-            std::unique_lock lock(_sending);
-            if (_output.Leaves({sender, *begin}))
-            {
-                _output.NoteRoute(what->To, {sender, *begin});
-                lock.unlock();
-                if (Authentication() != nullptr && what->To != KeyExchange::Prefix{})
-                {
-                    Authentication()->Sent(*what);
-                }
-                if (!Keys()->Put(datagram, *what, {sender, *begin}))
-                {
-                    return false;  // no earlier one was put either
-                }
-            }
-        }
-        return what.has_value();
-    }
-    // Notes a received datagram. Returns false if the vendor should not see it.
-    bool NoteExchange(std::span<const std::uint8_t> datagram)
-    {
-        const auto what = Keys() != nullptr ? ReadKeyExchange(datagram) : std::nullopt;
-        if (what && Authentication() != nullptr && Keys()->IsForUs(*what))
-        {
-            Authentication()->Received(*what);
-        }
-        return !what || Keys()->Received(*what);
-    }
-
     void NoteAcknowledgements(std::span<const std::uint8_t> datagram)
     {
         const auto found = ReadAcknowledgements(datagram);
@@ -462,13 +355,9 @@ GuardedUdpDescriptor::GuardedUdpDescriptor(std::shared_ptr<rtps::UDPv4TransportD
 {
     maxMessageSize = _settings.MaxDatagram;
     // The vendor calls create_transport, and is not prepared for an exception there.
-    for (DueThread *const thread : std::initializer_list<DueThread *>{
-             _settings.Keys.get(), _settings.Meeting.get(), _settings.Authentication.get()})
+    if (_settings.Meeting != nullptr)
     {
-        if (thread != nullptr)
-        {
-            thread->Prepare();
-        }
+        _settings.Meeting->Prepare();
     }
 }
 

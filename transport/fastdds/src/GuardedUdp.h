@@ -6,8 +6,7 @@
 // - Multicast groups that peers name are not sent to where multicast may not pass.
 // - The vendor's statistics are not sent, but for one message of 256 (ShortenedDatagram.h).
 // - Datagrams that the vendor repeats too quickly, or sends to each peer by itself, are rate-limited
-//   (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h, common/KeyExchangeOutbox.h) or replaced by cards
-//   (rtps/Meeting.h).
+//   (AnnouncementPace.h, RequestPace.h, HeartbeatPace.h) or replaced by cards (rtps/Meeting.h).
 // - With a member of a fleet with keys, each datagram is sealed before it goes to a socket, and what does not
 //   open is dropped before anything else looks at it (envelope/SealedSession.h).
 // VendorInput.h hands datagrams to the vendor, SocketOutput.h gives them to the sockets.
@@ -23,11 +22,9 @@
 #include <vector>
 
 #include "Vendor.h"
-#include "common/KeyExchangeThread.h"
 #include "common/OwnNetworks.h"
 #include "common/SendingTurn.h"
 #include "envelope/SealedSession.h"
-#include "guard/AuthenticationThread.h"
 #include "guard/RtpsGuard.h"
 #include "rtps/MeetingThread.h"
 
@@ -36,7 +33,6 @@ namespace Rabit::FastDds
 
 // A socket of the vendor's, and an address.
 using Route = std::pair<rtps::SenderResource *, rtps::Locator_t>;
-using KeyThread = KeyExchangeThread<Route>;
 
 class GuardedUdpDescriptor final : public rtps::ChainingTransportDescriptor
 {
@@ -69,11 +65,9 @@ public:
         // AnnounceAt was last called, on any thread with the vendor's locks held.
         std::chrono::milliseconds AnnouncementPeriod{0};
         std::function<void(std::chrono::steady_clock::time_point)> AnnounceAt{};
-        // Schedules the exchange of keys. Null: without DDS Security.
-        std::shared_ptr<KeyThread> Keys{};
         // Null: datagrams go as they are.
         std::shared_ptr<Envelope::SealedSession> Seal{};
-        // With Seal: the RTPS header with which the vendor's datagrams begin, but for the minor version.
+        // The RTPS header with which the vendor's datagrams begin, but for the minor version.
         Envelope::RtpsHeader Header{};
         // With Seal: takes log lines, on any thread.
         std::function<void(const std::string &)> OnLine{};
@@ -81,8 +75,6 @@ public:
         std::vector<std::uint16_t> DiscoveryPorts{};
         // Null: endpoints are found by the vendor's discovery alone.
         std::shared_ptr<Rtps::MeetingThread> Meeting{};
-        // Null unless Mode is Protected.
-        std::shared_ptr<Rtps::AuthenticationThread> Authentication{};
         // Where the guard notes the goodbyes of known participants.
         std::shared_ptr<Rtps::RecentGoodbyes> Goodbyes = std::make_shared<Rtps::RecentGoodbyes>();
         // Where the guard keeps the accounts of participants.

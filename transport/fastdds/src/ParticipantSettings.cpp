@@ -24,9 +24,6 @@ namespace
 
 // The kernel caps them at net.core.rmem_max and wmem_max.
 constexpr std::uint32_t SocketBuffer = 4u << 20;
-// A participant shows its certificate and permissions in one message. The vendor does not fragment these
-// messages, and limits their size like that of any other message.
-constexpr std::size_t LargestHandshake = 16384;
 // A peer without a port is looked for at the ports of this many participants of its host.
 constexpr std::uint32_t ParticipantsPerPeer = 16;
 // A host that is not listed is answered at the ports of this many participants. An answer is small, but goes
@@ -58,32 +55,21 @@ rtps::RTPSParticipantAttributes ReadProfile(const std::string &file)
     return *profile;
 }
 
-void AddSecurity(const TransportSecurity &security, rtps::PropertyPolicy &properties)
+// The guard and the cards must read each datagram; with a member, GuardedUdp must see each one.
+void CheckProtection(const TransportSettings &settings, const rtps::RTPSParticipantAttributes &attributes)
 {
-    const auto add = [&](const std::string &name, const std::string &value)
-    { properties.properties().emplace_back(name, value); };
-    const auto addFile = [&](const std::string &name, const std::string &file)
+    const auto &properties = attributes.properties.properties();
+    const bool hasSecurity =
+        std::any_of(properties.begin(), properties.end(),
+                    [](const rtps::Property &property) { return property.name().starts_with("dds.sec."); });
+    if (hasSecurity)
     {
-        if (!file.empty())
-        {
-            add(name, "file://" + file);
-        }
-    };
-    add("dds.sec.auth.plugin", "builtin.PKI-DH");
-    addFile("dds.sec.auth.builtin.PKI-DH.identity_ca", security.IdentityAuthority);
-    addFile("dds.sec.auth.builtin.PKI-DH.identity_certificate", security.Certificate);
-    addFile("dds.sec.auth.builtin.PKI-DH.identity_crl", security.Revoked);
-    addFile("dds.sec.auth.builtin.PKI-DH.private_key", security.PrivateKey);
-    add("dds.sec.access.plugin", "builtin.Access-Permissions");
-    addFile("dds.sec.access.builtin.Access-Permissions.permissions_ca", security.PermissionsAuthority);
-    addFile("dds.sec.access.builtin.Access-Permissions.governance", security.Governance);
-    addFile("dds.sec.access.builtin.Access-Permissions.permissions", security.Permissions);
-    add("dds.sec.crypto.plugin", "builtin.AES-GCM-GMAC");
-}
-
-// With a member, GuardedUdp must see each datagram.
-void CheckMember(const TransportSettings &settings, const rtps::RTPSParticipantAttributes &attributes)
-{
+        throw TransportError(
+            "the profiles file " + settings.BackendConfig +
+                " configures DDS Security, which nodes do not use: leave it out, and give the "
+                "nodes keys (rabit keys)",
+            "backend_config");
+    }
     if (settings.Member == nullptr)
     {
         return;
@@ -99,17 +85,6 @@ void CheckMember(const TransportSettings &settings, const rtps::RTPSParticipantA
                                  " has transports, whose datagrams the keys cannot protect: leave them out",
                              "backend_config");
     }
-    const auto &properties = attributes.properties.properties();
-    const bool hasSecurity =
-        std::any_of(properties.begin(), properties.end(),
-                    [](const rtps::Property &property) { return property.name().starts_with("dds.sec."); });
-    if (hasSecurity)
-    {
-        throw TransportError(
-            "the profiles file " + settings.BackendConfig +
-                " configures DDS Security, which a node with keys does not use: leave it out",
-            "backend_config");
-    }
 }
 
 std::uint32_t DiscoveryGroupPort(const TransportSettings &settings,
@@ -118,17 +93,8 @@ std::uint32_t DiscoveryGroupPort(const TransportSettings &settings,
     return attributes.port.getMulticastPort(static_cast<std::uint32_t>(settings.Domain));
 }
 
-RtpsGuard::Mode GuardMode(const TransportSettings &settings,
-                          const rtps::RTPSParticipantAttributes &attributes)
+RtpsGuard::Mode GuardMode(const TransportSettings &settings)
 {
-    if (settings.Security)
-    {
-        return RtpsGuard::Mode::Protected;
-    }
-    if (rtps::PropertyPolicyHelper::find_property(attributes.properties, "dds.sec.auth.plugin") != nullptr)
-    {
-        return RtpsGuard::Mode::Secured;
-    }
     return settings.SharedMemory ? RtpsGuard::Mode::StructureOnly : RtpsGuard::Mode::Full;
 }
 
@@ -166,8 +132,7 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     udp->interfaceWhiteList = settings.Interfaces;
     udp->maxInitialPeersRange = ParticipantsPerPeer;
     attributes.useBuiltinTransports = false;
-    guarded.MaxDatagram = static_cast<std::uint32_t>(
-        settings.Security ? std::max(settings.MaxDatagram, LargestHandshake) : settings.MaxDatagram);
+    guarded.MaxDatagram = static_cast<std::uint32_t>(settings.MaxDatagram);
     if (guarded.Seal != nullptr)
     {
         guarded.MaxDatagram -= static_cast<std::uint32_t>(guarded.Seal->MostAdded());
@@ -178,7 +143,7 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
                 attributes.port.getUnicastPort(static_cast<std::uint32_t>(settings.Domain), id)));
         }
     }
-    guarded.Mode = GuardMode(settings, attributes);
+    guarded.Mode = GuardMode(settings);
     guarded.SampleGroup =
         IsMulticastForData(settings) ? std::optional(SampleGroup(settings, attributes)) : std::nullopt;
     guarded.GroupPort = IsMulticastForData(settings) ? 0 : DiscoveryGroupPort(settings, attributes);
@@ -187,7 +152,6 @@ void AddTransports(const TransportSettings &settings, const std::shared_ptr<Sess
     { samples ? log->SentSamples(datagrams, bytes) : log->SentDiscovery(datagrams, bytes); };
     guarded.OnDropped = [log] { log->MalformedDatagram(); };
     guarded.Meeting = guarded.Mode == RtpsGuard::Mode::Full ? guarded.Meeting : nullptr;
-    guarded.Authentication = guarded.Mode == RtpsGuard::Mode::Protected ? guarded.Authentication : nullptr;
     guarded.HasPeers = !settings.Peers.empty();
     guarded.Networks =
         OwnNetworks(settings.Interfaces, ListHostNetworks().value_or(std::vector<HostNetwork>()));
@@ -261,7 +225,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
     {
         attributes = ReadProfile(settings.BackendConfig);
     }
-    CheckMember(settings, attributes);
+    CheckProtection(settings, attributes);
     attributes.setName(settings.Node.c_str());
     // Liveliness of single writers is not used: participants have leases, and nodes send beats.
     attributes.builtin.use_WriterLivelinessProtocol = false;
@@ -273,12 +237,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
         ToDuration(std::min(std::chrono::milliseconds(250), settings.AnnouncementPeriod));
     LimitPeers(attributes);
     AddProperties(attributes.properties);
-    if (settings.Security)
-    {
-        AddSecurity(*settings.Security, attributes.properties);
-    }
-    const bool hasCard =
-        attributes.userTransports.empty() && GuardMode(settings, attributes) == RtpsGuard::Mode::Full;
+    const bool hasCard = attributes.userTransports.empty() && GuardMode(settings) == RtpsGuard::Mode::Full;
     const std::string userData = MakeUserData(settings.Incarnation, hasCard);
     attributes.userData.assign(userData.begin(), userData.end());
     if (attributes.userTransports.empty())
@@ -292,8 +251,8 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
 
 void CheckConfig(const TransportSettings &settings)
 {
-    CheckMember(settings, settings.BackendConfig.empty() ? rtps::RTPSParticipantAttributes()
-                                                         : ReadProfile(settings.BackendConfig));
+    CheckProtection(settings, settings.BackendConfig.empty() ? rtps::RTPSParticipantAttributes()
+                                                             : ReadProfile(settings.BackendConfig));
 }
 
 bool HasOwnTransports(const std::string &profilesFile)

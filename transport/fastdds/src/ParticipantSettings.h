@@ -20,8 +20,8 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
                                                           const std::shared_ptr<SessionLog> &log,
                                                           GuardedUdpDescriptor::Settings udp);
 
-// Throws TransportError if the profiles file, if any, cannot be read or is refused by the vendor, and if with
-// a member of a fleet with keys some datagrams would not be sealed.
+// Throws TransportError if the profiles file, if any, cannot be read, is refused by the vendor or configures
+// DDS Security, and if with a member of a fleet with keys some datagrams would not be sealed.
 void CheckConfig(const TransportSettings &settings);
 
 // True if the profiles file, if any, defines transports. Throws TransportError if the vendor refuses the

@@ -6,14 +6,12 @@
 #include <random>
 #include <string>
 #include <system_error>
-#include <utility>
 
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include "EndpointSettings.h"
-#include "KeyAddressees.h"
 #include "ParticipantSettings.h"
 #include "common/MulticastUse.h"
 
@@ -22,10 +20,6 @@ namespace Rabit::FastDds
 
 namespace
 {
-
-// OMG DDS Security 1.1, 9.4.2.4: what a participant announces of its protection.
-constexpr std::uint32_t IsSecured = 1u << 31;
-constexpr std::uint32_t HasDiscoveryEncrypted = 1u << 1;
 
 Rtps::GuidPrefix NameOf(const rtps::GuidPrefix_t &prefix)
 {
@@ -123,7 +117,6 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                                   .Memory = _multicast ? settings.Memory : settings.Lease,
                                   .IsMulticast = _multicast},
           context.Turns)),
-      _keys(settings.Security ? std::make_shared<KeyThread>(context.Turns, settings.MaxDatagram) : nullptr),
       _seal(settings.Member ? std::make_shared<Envelope::SealedSession>(settings.Member) : nullptr)
 {
     const rtps::GuidPrefix_t prefix = MakeGuidPrefix();
@@ -132,11 +125,9 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                                                  .Sending = context.Sending,
                                                  .Announce = [this] { Announce(); },
                                                  .AnnounceAt = [this](auto time) { _announceTimer.At(time); },
-                                                 .Keys = _keys,
                                                  .Seal = _seal,
                                                  .Header = HeaderOf(prefix),
                                                  .Meeting = _meeting,
-                                                 .Authentication = _authentication,
                                                  .Goodbyes = _goodbyes,
                                                  .Accounts = _accounts});
     attributes.participantID = static_cast<std::int32_t>(_number.Get());
@@ -151,8 +142,7 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
     if (_participant == nullptr)
     {
         throw TransportError("Fast DDS cannot join domain " + std::to_string(settings.Domain) +
-                             ": no free port, or no usable network interface" +
-                             (settings.Security ? ", or it does not accept the keys" : ""));
+                             ": no free port, or no usable network interface");
     }
     if (_seal != nullptr && !_seal->IsStarted())
     {
@@ -165,14 +155,6 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
         Leave();
         throw TransportError(WhyDeaf(settings.Domain, port), "domain");
     }
-    if (settings.Security)
-    {
-        _keys->TellSettled([this](bool isSettled) { KeyAddressees::SetPeriods(*_participant, isSettled); });
-        if (!KeyAddressees::Heed(*_participant))
-        {
-            Log()->Line("Fast DDS does not show its writer of keys: it says them to all");
-        }
-    }
 }
 
 SessionCore::~SessionCore()
@@ -184,11 +166,6 @@ void SessionCore::Leave()
 {
     Close();
     _meeting->Stop();
-    _authentication->Stop();
-    if (_keys != nullptr)
-    {
-        _keys->Stop();
-    }
     if (_seal != nullptr)
     {
         _seal->Stop();
@@ -240,83 +217,22 @@ void SessionCore::Announce()
 void SessionCore::PeerAppeared(const ParticipantNews &peer)
 {
     const auto incarnation = ParseUserData(peer.UserData);
-    const GuidPrefix &prefix = peer.Prefix;
-    if (!incarnation || IsOwn(prefix))
+    if (incarnation && !IsOwn(peer.Prefix))
     {
-        return;
+        Appeared(NameOf(peer.Prefix), {peer.Name, *incarnation}, PlaceOf(peer));
     }
-    const Rtps::GuidPrefix name = NameOf(prefix);
-    const Newcomer newcomer{.Who = {peer.Name, *incarnation}, .Place = PlaceOf(peer)};
-    if (_security)
-    {
-        const std::uint32_t protection = peer.Protection.value_or(0);
-        if ((protection & IsSecured) != 0 &&
-            ((protection & HasDiscoveryEncrypted) != 0) != _security->Encrypts)
-        {
-            Log()->OtherLevel(newcomer.Who.Node);
-        }
-        // Authentication confirms the first announcement: later ones may be forged.
-        const std::lock_guard lock(_provenMutex);
-        if (!_proven.contains(name))
-        {
-            _unproven.emplace(name, newcomer);
-            return;
-        }
-    }
-    Appeared(name, newcomer.Who, newcomer.Place);
-}
-
-void SessionCore::onParticipantAuthentication(rtps::RTPSParticipant * /*participant*/,
-                                              rtps::ParticipantAuthenticationInfo &&info)
-{
-    const Rtps::GuidPrefix name = NameOf(info.guid.guidPrefix);
-    Newcomer newcomer;
-    {
-        const std::lock_guard lock(_provenMutex);
-        const auto found = _unproven.find(name);
-        if (info.status != rtps::ParticipantAuthenticationInfo::AUTHORIZED_PARTICIPANT)
-        {
-            Log()->Stranger(NameOfNewcomer(name));
-            return;
-        }
-        _proven.insert(name);
-        if (found == _unproven.end())
-        {
-            return;
-        }
-        newcomer = std::move(found->second);
-        _unproven.erase(found);
-    }
-    Appeared(name, newcomer.Who, newcomer.Place);
-}
-
-std::string SessionCore::NameOfNewcomer(const Rtps::GuidPrefix &peer) const
-{
-    const auto found = _unproven.find(peer);
-    return found == _unproven.end() ? "" : found->second.Who.Node;
 }
 
 void SessionCore::PeerGone(const Rtps::GuidPrefix &peer, PeerEvent::Kind how)
 {
-    const bool isForgotten = _authentication->WasForgotten(peer);
     if (how == PeerEvent::Kind::Lost)
     {
         _accounts->Left(peer);
         _meeting->Lost(peer);
     }
-    else if (_meeting->WasEnded(peer) || isForgotten)
+    else if (_meeting->WasEnded(peer))
     {
         how = PeerEvent::Kind::Lost;
-    }
-    _authentication->Gone(peer);
-    {
-        const std::lock_guard lock(_provenMutex);
-        if (isForgotten)
-        {
-            Log()->AuthenticationFailed(NameOfNewcomer(peer));
-        }
-        _unproven.erase(peer);
-        _proven.erase(peer);
     }
     Gone(peer, how);
 }

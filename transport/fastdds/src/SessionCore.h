@@ -4,12 +4,8 @@
 
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
-#include <set>
-#include <string>
 
 #include "AnnouncementTimer.h"
 #include "GuardedUdp.h"
@@ -47,33 +43,16 @@ private:
     std::optional<SettingsProblem> MeetingProblem() const override { return _meeting->Problem(); }
     void OnParticipant(const ParticipantNews &news) override;
     void OnEndpoint(const EndpointNews &news) override;
-    void onParticipantAuthentication(rtps::RTPSParticipant *participant,
-                                     rtps::ParticipantAuthenticationInfo &&info) override;
     // Leaves the network with a participant that may be incomplete.
     void Leave();
     // Called on a thread of the network, also before the participant is complete.
     void Announce();
     void PeerAppeared(const ParticipantNews &peer);
     void PeerGone(const Rtps::GuidPrefix &peer, PeerEvent::Kind how);
-    // Name of a Rabit node that is not authenticated yet; empty if unknown. Requires _provenMutex.
-    std::string NameOfNewcomer(const Rtps::GuidPrefix &peer) const;
-
-    struct Newcomer
-    {
-        ParticipantIdentity Who;
-        PeerPlace Place;
-    };
 
     HandlerGate _announceGate;
     const bool _multicast;
-    std::mutex _provenMutex;
-    // Rabit nodes that are not authenticated yet; guarded by _provenMutex
-    std::map<Rtps::GuidPrefix, Newcomer> _unproven;
-    std::set<Rtps::GuidPrefix> _proven;  // authenticated participants; guarded by _provenMutex
     const std::shared_ptr<Rtps::MeetingThread> _meeting;
-    const std::shared_ptr<Rtps::AuthenticationThread> _authentication =
-        std::make_shared<Rtps::AuthenticationThread>(AwaitsProtectedAnnouncements);
-    const std::shared_ptr<KeyThread> _keys;                // null without security
     const std::shared_ptr<Envelope::SealedSession> _seal;  // null without a member
     // The vendor would give each participant of a process the next number, and with it the next ports, even
     // if earlier participants are gone. A session that joins the network anew would leave the ports at which

@@ -67,9 +67,40 @@ void SocketOutput::NoteAnnounced(const Route &route, TimePoint now)
     _cardRoutes.NoteForAll(route, IsGroup(route.second), now);
 }
 
-std::vector<Route> SocketOutput::RoutesTo(const std::optional<GuidPrefix> &peer, TimePoint now)
+void SocketOutput::SendCard(const std::optional<GuidPrefix> &peer, std::span<const std::uint8_t> datagram,
+                            TimePoint now, const TimePoint &timeout, Lock &lock)
 {
-    return _cardRoutes.To(peer, now);
+    const std::vector<Place> places = _cardRoutes.HeardAt(peer, now);
+    // A participant that was heard is no listed peer without a route: nothing needs to go to all.
+    const std::vector<Route> routes =
+        peer && !places.empty() ? std::vector<Route>() : _cardRoutes.To(peer, now);
+    for (const auto &[socket, destination] : routes)
+    {
+        Send(socket, {destination}, datagram, false, timeout, lock);
+    }
+    for (const Place &place : places)
+    {
+        const bool isSent =
+            std::any_of(routes.begin(), routes.end(),
+                        [&place](const Route &route) { return PlaceOf(route.second) == place; });
+        if (isSent || !_guard.MayGo(place, datagram.size(), Ledger::Cargo::Discovery, _addresses, now))
+        {
+            continue;
+        }
+        if (_settings.Seal == nullptr)
+        {
+            SendTo(place, datagram, timeout);
+            continue;
+        }
+        thread_local std::vector<std::uint8_t> sealed;
+        lock.unlock();
+        const bool isSealed = SealFor(LocatorOf(place), datagram, sealed);
+        lock.lock();
+        if (isSealed)
+        {
+            SendTo(place, sealed, timeout);
+        }
+    }
 }
 
 void SocketOutput::ChooseGroupWhereAddressesLack(rtps::SenderResource *socket, bool toOne, TimePoint now,
@@ -180,35 +211,52 @@ bool SocketOutput::SealFor(const rtps::Locator_t &destination, std::span<const s
 
 void SocketOutput::SendSealed(std::span<const std::uint8_t> sealed, TimePoint now, const TimePoint &timeout)
 {
-    const std::vector<Route> routes = RoutesTo(std::nullopt, now);
+    const std::vector<Route> routes = _cardRoutes.To(std::nullopt, now);
     for (const Route &route : routes)
     {
         _settings.OnSent(false, 1, sealed.size());
         SendOne(route, sealed, timeout);
     }
-    for (const HostAddress &host : _strangers.Current(now))
+    for (const Place &place : PlacesOfStrangers(now))
     {
-        for (const std::uint16_t port : _settings.DiscoveryPorts)
+        const bool isSent =
+            std::any_of(routes.begin(), routes.end(),
+                        [&place](const Route &route) { return PlaceOf(route.second) == place; });
+        if (!isSent && _guard.MayGo(place, sealed.size(), Ledger::Cargo::Discovery, _addresses, now))
         {
-            const Place place{.Host = host, .Port = port};
-            const bool isSent =
-                std::any_of(routes.begin(), routes.end(),
-                            [&place](const Route &route) { return PlaceOf(route.second) == place; });
-            if (!isSent && _guard.MayGo(place, sealed.size(), Ledger::Cargo::Discovery, _addresses, now))
-            {
-                SendSealedTo(place, sealed, timeout);
-            }
+            SendTo(place, sealed, timeout);
         }
     }
 }
 
-void SocketOutput::SendSealedTo(const Place &to, std::span<const std::uint8_t> sealed,
-                                const TimePoint &timeout)
+std::vector<Place> SocketOutput::PlacesOfStrangers(TimePoint now) const
+{
+    std::vector<Place> places;
+    if (_settings.SampleGroup)
+    {
+        return places;
+    }
+    for (const Place &stranger : _settings.Seal->Strangers(now))
+    {
+        if (stranger.Port != 0)
+        {
+            places.push_back(stranger);
+            continue;
+        }
+        for (const std::uint16_t port : _settings.DiscoveryPorts)
+        {
+            places.push_back({.Host = stranger.Host, .Port = port});
+        }
+    }
+    return places;
+}
+
+void SocketOutput::SendTo(const Place &to, std::span<const std::uint8_t> datagram, const TimePoint &timeout)
 {
     if (_sockets.empty())
     {
-        _settings.OnSent(false, 1, sealed.size());
-        _reply.Send(to, sealed);
+        _settings.OnSent(false, 1, datagram.size());
+        _reply.Send(to, datagram);
         return;
     }
     const rtps::Locator_t destination = LocatorOf(to);
@@ -217,8 +265,8 @@ void SocketOutput::SendSealedTo(const Place &to, std::span<const std::uint8_t> s
     {
         if (Leaves(number, destination))
         {
-            _settings.OnSent(false, 1, sealed.size());
-            SendOne({socket, destination}, sealed, timeout);
+            _settings.OnSent(false, 1, datagram.size());
+            SendOne({socket, destination}, datagram, timeout);
         }
     }
 }

@@ -14,7 +14,6 @@
 #include "ReplySocket.h"
 #include "Vendor.h"
 #include "common/HardwareAddresses.h"
-#include "common/HeardStrangers.h"
 #include "common/RecentNumbers.h"
 #include "common/Rtps.h"
 #include "guard/RtpsGuard.h"
@@ -58,8 +57,15 @@ public:
     void NoteRoute(const Rtps::GuidPrefix &peer, const Route &route);
     // Notes that the vendor announces its participant by that route.
     void NoteAnnounced(const Route &route, TimePoint now);
-    // The routes of a card message to a participant, or to all if it is empty or not known.
-    std::vector<Route> RoutesTo(const std::optional<Rtps::GuidPrefix> &peer, TimePoint now);
+    // `peer` has announced that it takes discovery data there (CardRoutes). For sessions whose samples do not
+    // go to a group.
+    void NoteHeard(const Rtps::GuidPrefix &peer, const Rtps::Place &at, TimePoint now)
+    {
+        _cardRoutes.NoteHeard(peer, at, now);
+    }
+    // Sends a card message to a participant, or to all if it is empty or not known. Unlocks `lock` to seal.
+    void SendCard(const std::optional<Rtps::GuidPrefix> &peer, std::span<const std::uint8_t> datagram,
+                  TimePoint now, const TimePoint &timeout, Lock &lock);
 
     // Replaces destinations of samples with unknown hardware addresses by the group. `toOne`: all
     // destinations are addresses of one participant, and one that works is enough.
@@ -73,12 +79,9 @@ public:
     // destination, with `lock` unlocked meanwhile. Returns false if the socket fails.
     bool Send(rtps::SenderResource *socket, const Destinations &destinations,
               std::span<const std::uint8_t> datagram, bool samples, const TimePoint &timeout, Lock &lock);
-    // A datagram came from that host, and was nothing for guard and vendor. For sessions whose samples do not
-    // go to a group.
-    void HeardStranger(const Rtps::HostAddress &host, TimePoint now) { _strangers.Heard(host, now); }
-    // Sends a sealed datagram to all as it is, and counts it: by the routes of card messages, and to the
-    // strangers that were heard. The sockets of nodes that send do not receive, so it goes to the usual ports
-    // of a stranger's host, as far as strangers are sent something.
+    // Sends a sealed datagram to all as it is, and counts it: by the routes of card messages, and, where
+    // samples do not go to a group, to SealedSession::Strangers. The sockets of nodes that send do not
+    // receive, so it goes to the usual ports of a stranger's host, as far as strangers are sent something.
     void SendSealed(std::span<const std::uint8_t> sealed, TimePoint now, const TimePoint &timeout);
     // The most bytes that sealing adds to a datagram; 0: none is sealed.
     std::size_t MostAdded() const { return _settings.Seal != nullptr ? _settings.Seal->MostAdded() : 0; }
@@ -87,7 +90,10 @@ private:
     bool Leaves(std::uint32_t socket, const rtps::Locator_t &destination) const;
     std::uint32_t NumberOf(const rtps::Locator_t &destination);
     bool MayGo(const rtps::Locator_t &destination, std::size_t bytes, bool samples, TimePoint now);
-    void SendSealedTo(const Rtps::Place &to, std::span<const std::uint8_t> sealed, const TimePoint &timeout);
+    // Sends a datagram as it is to a place to which the vendor may send nothing.
+    void SendTo(const Rtps::Place &to, std::span<const std::uint8_t> datagram, const TimePoint &timeout);
+    // The places of SealedSession::Strangers.
+    std::vector<Rtps::Place> PlacesOfStrangers(TimePoint now) const;
     // Seals for one destination. Returns false if the datagram must not go. Needs no lock.
     bool SealFor(const rtps::Locator_t &destination, std::span<const std::uint8_t> datagram,
                  std::vector<std::uint8_t> &sealed) const;
@@ -105,7 +111,6 @@ private:
     RecentNumbers<rtps::Locator_t> _destinations;
     std::map<rtps::SenderResource *, std::uint32_t> _sockets;
     rtps::SendResourceList _noSockets;
-    Rtps::HeardStrangers _strangers;
     ReplySocket _reply;
     Destinations _allowed;  // of the datagram to send
 };

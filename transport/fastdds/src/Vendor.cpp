@@ -23,19 +23,11 @@ void set_attributes_from_qos(rtps::RTPSParticipantAttributes &attributes, const 
 namespace eprosima::fastdds::rtps
 {
 class BaseWriter;
-class BaseReader;
-// Begins so in version 3.1.
-struct LocalReader
-{
-    BaseReader *Reader;
-};
 class RTPSDomainImpl
 {
 public:
     // Finds a writer of a participant of this process, builtin ones included; nullptr if there is none.
     static BaseWriter *find_local_writer(const GUID_t &guid);
-    // The same of a reader.
-    static std::shared_ptr<LocalReader> find_local_reader(const GUID_t &guid);
 };
 }  // namespace eprosima::fastdds::rtps
 
@@ -84,73 +76,12 @@ void SwitchIntraprocessOff()
     rtps::RTPSDomain::set_library_settings(library);
 }
 
-namespace
-{
-
-// Matches a builtin reader of this process with a builtin writer of a peer, as long as the object lives. The
-// reader's participant must outlive it: ~SessionCore stops its threads before it removes the participant.
-class BuiltinMatch
-{
-public:
-    BuiltinMatch(const rtps::GUID_t &reader, const rtps::GUID_t &writer) : _writer(writer)
-    {
-        const auto found = rtps::RTPSDomainImpl::find_local_reader(reader);
-        if (found == nullptr)
-        {
-            return;
-        }
-        // A BaseReader begins with its RTPSReader.
-        auto *const local = reinterpret_cast<rtps::RTPSReader *>(found->Reader);
-        rtps::PublicationBuiltinTopicData data;
-        data.guid = writer;
-        data.durability.kind = dds::TRANSIENT_LOCAL_DURABILITY_QOS;
-        // If the vendor itself has matched them, that remains.
-        const bool isNew = !local->matched_writer_is_matched(writer) && local->matched_writer_add(data);
-        _reader = isNew ? local : nullptr;
-    }
-    ~BuiltinMatch()
-    {
-        if (_reader != nullptr)
-        {
-            _reader->matched_writer_remove(_writer);
-        }
-    }
-    BuiltinMatch(const BuiltinMatch &) = delete;
-    BuiltinMatch &operator=(const BuiltinMatch &) = delete;
-
-private:
-    rtps::RTPSReader *_reader = nullptr;
-    rtps::GUID_t _writer;
-};
-
-}  // namespace
-
-void AsProtected(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer,
-                 const std::function<void()> &deliver)
-{
-    constexpr Rtps::EntityId plainReader = 0x000100c7;
-    // OMG DDS Security 1.1, 7.4.5: SPDPbuiltinParticipantsSecureWriter and its reader
-    constexpr Rtps::EntityId secureWriter = 0xff0101c2;
-    constexpr Rtps::EntityId secureReader = 0xff0101c7;
-    // With the first match, the reader of plain announcements heeds them. With the second one, the vendor
-    // takes the peer for one with protected endpoints.
-    const BuiltinMatch plain(GuidOf(own, plainReader), GuidOf(peer, Rtps::ParticipantWriter));
-    const BuiltinMatch secure(GuidOf(own, secureReader), GuidOf(peer, secureWriter));
-    deliver();
-}
-
 void ReadInterfaces()
 {
     eprosima::SystemInfo::update_interfaces();
 }
 
 #else
-
-void AsProtected(const Rtps::GuidPrefix & /*own*/, const Rtps::GuidPrefix & /*peer*/,
-                 const std::function<void()> &deliver)
-{
-    deliver();
-}
 
 std::optional<rtps::RTPSParticipantAttributes> LoadProfile(const std::string &file)
 {
@@ -178,16 +109,9 @@ void ReadInterfaces() {}  // each participant does
 
 void RemoveOwnSamples(const rtps::RTPSParticipant &participant)
 {
-    // OMG DDSI-RTPS 2.3, 9.3.1.3, and OMG DDS Security 1.1, 7.4.5. The other builtin writers repeat no
-    // heartbeats.
-    constexpr Rtps::EntityId reliable[] = {Rtps::PublicationsWriter,
-                                           Rtps::SubscriptionsWriter,
-                                           Rtps::LivelinessWriter,
-                                           0xff0003c2,   // SEDPbuiltinPublicationsSecureWriter
-                                           0xff0004c2,   // SEDPbuiltinSubscriptionsSecureWriter
-                                           0xff0101c2,   // SPDPbuiltinParticipantsSecureWriter
-                                           0xff0200c2,   // BuiltinParticipantMessageSecureWriter
-                                           0xff0202c3};  // BuiltinParticipantVolatileMessageSecureWriter
+    // OMG DDSI-RTPS 2.3, 9.3.1.3. The other builtin writers repeat no heartbeats.
+    constexpr Rtps::EntityId reliable[] = {Rtps::PublicationsWriter, Rtps::SubscriptionsWriter,
+                                           Rtps::LivelinessWriter};
     for (const Rtps::EntityId entity : reliable)
     {
         if (rtps::RTPSWriter *const writer = FindWriter({participant.getGuid().guidPrefix, entity}))

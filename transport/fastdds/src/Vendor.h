@@ -105,7 +105,6 @@ using RecursiveTimedMutex = eprosima::fastrtps::RecursiveTimedMutex;
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -164,8 +163,6 @@ struct ParticipantNews
     const std::vector<rtps::octet> &UserData;
     const rtps::RemoteLocatorList &Discovery;  // where it takes discovery data
     const rtps::RemoteLocatorList &Samples;    // where it takes samples
-    // OMG DDS Security 1.1, 7.2.8: the flags of its protection; empty if this version does not tell.
-    std::optional<std::uint32_t> Protection;
 };
 
 // The announcement of a writer or a reader.
@@ -190,13 +187,6 @@ std::optional<rtps::RTPSParticipantAttributes> LoadProfile(const std::string &fi
 
 // Switches intraprocess delivery off in this process. Call it before a participant is made.
 void SwitchIntraprocessOff();
-
-inline rtps::GUID_t GuidOf(const Rtps::GuidPrefix &participant, Rtps::EntityId entity)
-{
-    rtps::GUID_t guid({}, entity);
-    std::copy(participant.begin(), participant.end(), guid.guidPrefix.value);
-    return guid;
-}
 
 // The IPv4 host of an address of the vendor's; UnknownHost for other kinds.
 inline Rtps::HostAddress HostOf(const rtps::Locator_t &locator)
@@ -234,17 +224,11 @@ void ReadInterfaces();
 // A writer of a participant of this process, builtin ones included; nullptr if there is none.
 rtps::RTPSWriter *FindWriter(const rtps::GUID_t &guid);
 
-// Removes all samples of the vendor's own reliable writers of a participant: of discovery and, with keys, of
-// the exchange of keys. Call it before the participant is removed, when it has no other endpoints. Version
-// 2.9 frees the samples while they are in the history, and the writer's timer of heartbeats runs on
-// (KeepLastHistory::RemoveWriter). Call it without the vendor's locks.
+// Removes all samples of the vendor's own reliable writers of a participant, which are of discovery. Call it
+// before the participant is removed, when it has no other endpoints. Version 2.9 frees the samples while they
+// are in the history, and the writer's timer of heartbeats runs on (KeepLastHistory::RemoveWriter). Call it
+// without the vendor's locks.
 void RemoveOwnSamples(const rtps::RTPSParticipant &participant);
-
-// Calls `deliver`, which hands an announcement or a goodbye of `peer` to the participant `own` of this
-// process. The vendor takes it for a protected one (AwaitsProtectedAnnouncements). Call it without the
-// vendor's locks, and for one participant of this process on one thread at a time.
-void AsProtected(const Rtps::GuidPrefix &own, const Rtps::GuidPrefix &peer,
-                 const std::function<void()> &deliver);
 
 }  // namespace Rabit::FastDds
 
@@ -267,14 +251,6 @@ inline void SetPace(rtps::ReaderAttributes &attributes, const ReaderPace &pace)
 {
     TimesOf(attributes) =
         std::tuple(Milliseconds(pace.HeartbeatResponseMs), Milliseconds(pace.FirstAcknowledgementMs));
-}
-
-// Sets how soon a reliable writer repeats heartbeats, and its other times to the vendor's defaults.
-inline void SetHeartbeatPeriod(rtps::RTPSWriter &writer, const Duration &period)
-{
-    rtps::WriterAttributes attributes;
-    std::get<0>(TimesOf(attributes)) = period;
-    Update(writer, attributes);
 }
 
 }  // namespace Rabit::FastDds

@@ -4,9 +4,6 @@
 namespace Rabit::FastDds
 {
 
-// See Vendor3.h. Here, a plain announcement is enough.
-inline constexpr bool AwaitsProtectedAnnouncements = false;
-
 class ParticipantEvents : public rtps::RTPSParticipantListener
 {
 protected:
@@ -26,8 +23,7 @@ private:
                        .Name = peer.m_participantName.to_string(),
                        .UserData = peer.m_userData.data_vec(),
                        .Discovery = peer.metatraffic_locators,
-                       .Samples = peer.default_locators,
-                       .Protection = peer.plugin_security_attributes_});
+                       .Samples = peer.default_locators});
     }
     void onReaderDiscovery(rtps::RTPSParticipant * /*participant*/, rtps::ReaderDiscoveryInfo &&info) override
     {
@@ -207,11 +203,6 @@ inline auto TimesOf(rtps::WriterAttributes &attributes)
 inline auto TimesOf(rtps::ReaderAttributes &attributes)
 {
     return std::tie(attributes.times.heartbeatResponseDelay, attributes.times.initialAcknackDelay);
-}
-
-inline void Update(rtps::RTPSWriter &writer, const rtps::WriterAttributes &attributes)
-{
-    writer.updateAttributes(attributes);
 }
 
 // Removes all samples of a writer, also of one whose history the vendor has.

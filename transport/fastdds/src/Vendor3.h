@@ -4,11 +4,6 @@
 namespace Rabit::FastDds
 {
 
-// True if the vendor discovers the endpoints of an authenticated participant only when it has the
-// participant's protected announcement (OMG DDS Security 1.1, 7.4: DCPSParticipantsSecure). Only Fast DDS
-// from version 2.10 on sends one.
-inline constexpr bool AwaitsProtectedAnnouncements = true;
-
 class ParticipantEvents : public rtps::RTPSParticipantListener
 {
 protected:
@@ -29,8 +24,7 @@ private:
                        .Name = info.participant_name.to_string(),
                        .UserData = info.user_data.data_vec(),
                        .Discovery = info.metatraffic_locators,
-                       .Samples = info.default_locators,
-                       .Protection = std::nullopt});
+                       .Samples = info.default_locators});
     }
     void on_reader_discovery(rtps::RTPSParticipant * /*participant*/, rtps::ReaderDiscoveryStatus status,
                              const rtps::SubscriptionBuiltinTopicData &info, bool &ignore) override
@@ -285,19 +279,11 @@ public:
     }
 };
 
-// Settings with which this version behaves as version 2 and Cyclone DDS do, where they know nothing newer.
+// A setting with which this version behaves as version 2 and Cyclone DDS do.
 inline void AddProperties(rtps::PropertyPolicy &properties)
 {
-    const std::pair<const char *, const char *> all[] = {
-        // Its service of types has endpoints of its own in each participant. Nodes do not use it.
-        {"fastdds.type_propagation", "disabled"},
-        {"dds.sec.auth.builtin.PKI-DH.preferred_key_agreement", "DH"},
-        {"dds.sec.auth.builtin.PKI-DH.transmit_algorithms_as_legacy", "true"},
-        {"dds.sec.access.builtin.Access-Permissions.transmit_algorithms_as_legacy", "true"}};
-    for (const auto &[name, value] : all)
-    {
-        properties.properties().emplace_back(name, value);
-    }
+    // Its service of types has endpoints of its own in each participant. Nodes do not use it.
+    properties.properties().emplace_back("fastdds.type_propagation", "disabled");
 }
 
 // The heartbeat period, the first heartbeat's delay, and the delays of repair.
@@ -312,11 +298,6 @@ inline auto TimesOf(rtps::WriterAttributes &attributes)
 inline auto TimesOf(rtps::ReaderAttributes &attributes)
 {
     return std::tie(attributes.times.heartbeat_response_delay, attributes.times.initial_acknack_delay);
-}
-
-inline void Update(rtps::RTPSWriter &writer, const rtps::WriterAttributes &attributes)
-{
-    writer.update_attributes(attributes);
 }
 
 // See Vendor2.h. This version stops the timer before it frees samples.

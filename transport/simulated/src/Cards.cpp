@@ -11,9 +11,9 @@ namespace Rabit::Simulated
 {
 
 // CardExchange's clock at simulated time 0 is that of a computer that has run for a while.
-Rtps::CardExchange::TimePoint NetworkCore::CardTime() const
+Rtps::CardExchange::TimePoint NetworkCore::CardTimeOf(Time now)
 {
-    return Rtps::CardExchange::TimePoint(std::chrono::hours(1)) + _now;
+    return Rtps::CardExchange::TimePoint(std::chrono::hours(1)) + now;
 }
 
 void NetworkCore::Await(DueTimer &timer, Event::Kind kind, ParticipantId at,

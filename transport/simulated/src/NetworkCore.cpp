@@ -74,12 +74,23 @@ void NetworkCore::AdvanceTo(Time time)
     std::unique_lock lock(_mutex);
     while (!_events.IsEmpty() && _events.NextTime() <= time)
     {
-        _now = std::max(_now, _events.NextTime());
+        Reach(_events.NextTime());
         ++_traffic.Events;
         Handle(_events.Pop());
         RunCalls(lock);
     }
+    Reach(time);
+}
+
+void NetworkCore::Reach(Time time)
+{
     _now = std::max(_now, time);
+    _shown->store(_now.count());
+}
+
+std::function<Rtps::CardExchange::TimePoint()> NetworkCore::ClockOfMembers() const
+{
+    return [shown = _shown] { return CardTimeOf(Time(shown->load())); };
 }
 
 void NetworkCore::RunCalls(std::unique_lock<std::mutex> &lock)

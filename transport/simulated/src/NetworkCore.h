@@ -3,6 +3,7 @@
 #include <rabit/simulated/SimulatedNetwork.h>
 #include <rabit/transport/Transport.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -47,6 +48,10 @@ public:
     void AdvanceTo(Time time);
     void CrashNode(const std::string &node);
     SimulatedTraffic Traffic() const;
+
+    // For SimulatedKeys: a clock that shows CardTime() and takes no lock, since seals ask members for
+    // problems and bulletins while it is held. It may outlive this.
+    std::function<Rtps::CardExchange::TimePoint()> ClockOfMembers() const;
 
     // For sessions.
     ParticipantPtr Join(const TransportSettings &settings, PeerHandler onPeer);
@@ -114,6 +119,8 @@ private:
     // NetworkCore.cpp
     void Handle(Event event);
     void Arrive(const ParticipantPtr &at, ParticipantId from, const Datagram &datagram);
+    // Sets _now, unless it is later already.
+    void Reach(Time time);
     void Later(Time delay, Event event) { _events.Push(_now + delay, std::move(event)); }
     void RunCalls(std::unique_lock<std::mutex> &lock);
 
@@ -156,7 +163,8 @@ private:
                        const std::shared_ptr<const EndpointList> &endpoints);
 
     // Cards.cpp
-    Rtps::CardExchange::TimePoint CardTime() const;
+    Rtps::CardExchange::TimePoint CardTime() const { return CardTimeOf(_now); }
+    static Rtps::CardExchange::TimePoint CardTimeOf(Time now);
     // Sets the timer for what is due then, unless it is set for an earlier time.
     void Await(DueTimer &timer, Event::Kind kind, ParticipantId at,
                std::optional<Rtps::CardExchange::TimePoint> due);
@@ -220,6 +228,8 @@ private:
 
     const SimulatedTimings _timings;
     std::mutex _stepping;  // held by the one thread that advances the time
+    const std::shared_ptr<std::atomic<Time::rep>> _shown =
+        std::make_shared<std::atomic<Time::rep>>(0);  // _now
     mutable std::mutex _mutex;
     // All below are guarded by _mutex.
     Random _random;

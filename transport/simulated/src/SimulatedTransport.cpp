@@ -20,10 +20,6 @@ std::unique_ptr<TransportSession> SimulatedTransport::Open(const TransportSettin
                                                            PeerHandler onPeer)
 {
     CheckSettings(settings);
-    if (settings.Security)
-    {
-        throw TransportError("the simulated network has no security", "security");
-    }
     return std::make_unique<Simulated::SimulatedSession>(_core, settings, std::move(onPeer));
 }
 

@@ -16,6 +16,7 @@
 
 namespace Rabit
 {
+class FleetMember;
 class GatewayTap;
 
 // How a mirrored message travels. Both ends of a message must agree; a subscription takes over what the
@@ -93,18 +94,14 @@ struct RadioSettings
 // The smallest budget, in bytes a second, with which a node can send its beats in time and anything else.
 double SmallestBudget(std::chrono::milliseconds slowestBeat);
 
-// How a fleet with keys is protected. Nodes of different levels do not hear each other.
-enum class SecurityLevel
-{
-    Sign,    // everybody can read the messages, nobody can forge them
-    Encrypt  // outsiders can neither read nor forge them
-};
-
-// DDS Security: nodes without keys of this fleet are neither heard nor answered (keys/README.md).
+// Keys of a fleet: each datagram is encrypted and signed, and nodes without keys of this fleet are neither
+// heard nor answered (keys/README.md).
 struct SecuritySettings
 {
     std::string Keys;  // the node's folder, which `rabit keys add` made
-    SecurityLevel Level = SecurityLevel::Encrypt;
+    // Set: in place of Keys, a membership that the program made (rabit/transport/FleetMember.h). Only in
+    // code. Its name and permissions are not compared with the configuration at the start.
+    std::shared_ptr<FleetMember> Member{};
 };
 
 // One of several networks by which a node reaches the others, for instance a mesh radio and a modem. Paths

@@ -105,7 +105,7 @@ def a_mistyped_command_or_option_is_answered_with_the_nearest(rabit):
                           (["echo", "--domian", "5", "uav1/Pose"], "did you mean `--domain`?"),
                           (["--domain", "5", "nodes"], "the option `--domain` belongs behind its command: rabit nodes --domain"),
                           (["--domain=5", "-v", "echo", "a/b"], "`--domain` belongs behind its command: rabit echo --domain"),
-                          (["keys", "--domain", "5", "add", "a"], "`--domain` belongs behind its command: rabit keys add --domain")):
+                          (["keys", "--days", "5", "add", "a"], "`--days` belongs behind its command: rabit keys add --days")):
         done = subprocess.run([rabit.program, *words], capture_output=True, text=True, timeout=LIMIT, check=False)
         assert done.returncode == 2 and answer in done.stderr and done.stderr.count("\n") == 1, done
 

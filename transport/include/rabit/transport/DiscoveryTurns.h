@@ -18,8 +18,7 @@ namespace Rabit
 //     ... on the sending thread:
 //     while (turns->IsDue() && turns->NextBytes() > 0) { turns->SendNext(); }
 //
-// Announcements of participants, and the endpoint discovery of peers without cards, take no turns. A rate
-// limits the exchange of keys, which takes no turns either.
+// Announcements of participants, and the endpoint discovery of peers without cards, take no turns.
 //
 // Thread-safe.
 class DiscoveryTurns
@@ -80,8 +79,6 @@ public:
         const std::lock_guard lock(_mutex);
         return _exchange != nullptr ? _exchange->QueueingDelay() : std::chrono::nanoseconds(0);
     }
-    // Limits the exchange of keys to this many bytes per second; 0, the initial value: unlimited.
-    void SetKeyRate(double bytesPerSecond) { _keyRate = bytesPerSecond; }
 
     // The session's side.
 
@@ -108,7 +105,6 @@ public:
             _onDue();
         }
     }
-    double KeyRate() const { return _keyRate; }
 
 private:
     std::mutex _mutex;
@@ -116,7 +112,6 @@ private:
     std::function<void()> _onDue;   // set before _isScheduled, and not changed afterwards
     std::atomic<bool> _isScheduled{false};
     std::atomic<bool> _isDue{false};
-    std::atomic<double> _keyRate{0.0};
 };
 
 }  // namespace Rabit

@@ -78,26 +78,6 @@ private:
     std::string _setting;
 };
 
-// DDS Security: the files that the vendors read, in PEM and S/MIME, and the check of a peer's name against
-// its certificate. The program `rabit keys` makes the files.
-struct TransportSecurity
-{
-    std::string IdentityAuthority;     // certificate of the authority that signs certificates
-    std::string PermissionsAuthority;  // certificate of the authority that signs Governance and Permissions
-    std::string Certificate;           // of this node
-    std::string PrivateKey;            // of this node
-    std::string Revoked;               // a list of revoked certificates; empty: none
-    std::string Governance;
-    std::string Permissions;
-    // True if Governance has discovery encrypted; used only for a hint in the log.
-    bool Encrypts = true;
-    // Returns true if a participant whose GUID begins with these 12 bytes may call itself `node`: they are
-    // bound to the subject of its certificate (OMG DDS Security 1.1, 9.3.3). A participant that may not is
-    // treated as a program that is not a node. Called on any thread; must not throw. Empty: every participant
-    // may.
-    std::function<bool(std::string_view node, std::span<const std::uint8_t, 12> guidPrefix)> MayBe;
-};
-
 // Settings common to all backends.
 struct TransportSettings
 {
@@ -132,18 +112,14 @@ struct TransportSettings
     std::chrono::milliseconds Lease{30000};
     std::chrono::milliseconds AnnouncementPeriod{10000};
     // A silent Rabit node is remembered for this long, so that discovery need not be repeated when it is
-    // back. It is remembered for the length of the lease alone with security, and without multicast.
+    // back. Without multicast it is remembered for the length of the lease alone.
     // Another session of the same node ends the former one once the former has been silent for some seconds.
     std::chrono::milliseconds Memory{std::chrono::hours(4)};
     // A vendor's own configuration file, for the expert; empty: none.
     std::string BackendConfig;
-    // If set, only participants with a certificate of the same authority are heard and answered, within their
-    // permissions. A backend without security throws TransportError.
-    std::optional<TransportSecurity> Security{};
-    // This node's membership of a fleet with keys (FleetMember.h), instead of Security; null: none. Only
-    // members of the same fleet are heard and answered, within their permissions. One object serves all
-    // sessions of the node. A backend that cannot seal each datagram with these settings throws
-    // TransportError.
+    // This node's membership of a fleet with keys (FleetMember.h); null: none. Only members of the same fleet
+    // are heard and answered, within their permissions. One object serves all sessions of the node. A backend
+    // that cannot seal each datagram with these settings throws TransportError.
     std::shared_ptr<FleetMember> Member{};
     // Takes the session's log lines (handlers that threw, writes that failed, types that differ ...), without
     // a newline. Called on any thread; must be quick and thread-safe. If not set, only the counters tell.
@@ -430,7 +406,7 @@ public:
     // written. It has at most `mostBytes` bytes, the headers of IP and UDP included. A datagram that does not
     // fit goes by itself. Counters count a kept datagram at once, with the bytes that it adds to what is
     // sent. With a Member, the bytes of the seal are counted when the datagram goes. Returns false, and
-    // begins nothing, if this session sends each datagram by itself, as with Security.
+    // begins nothing, if this session sends each datagram by itself.
     //
     // A turn is short: between the calls the thread writes some samples. Only one thread uses turns, and has
     // one turn at a time. A session that joins the network anew meanwhile drops the datagrams.

@@ -7,6 +7,7 @@
 #include <rabit/RabitWorkspace.h>
 #include <rabit/gateway/Fleet.h>
 #include <rabit/gateway/GatewayManager.h>
+#include <rabit/simulated/SimulatedKeys.h>
 #include <rabit/simulated/SimulatedTransport.h>
 
 #include <algorithm>
@@ -167,11 +168,28 @@ public:
                        const SimulatedNode::AddFirst &addFirst = {})
     {
         _ahead += std::chrono::seconds(1000);
-        auto node = std::make_unique<SimulatedNode>(config, Network, _ahead, gps, addFirst);
+        GatewayConfig own = config;
+        if (_keys && !(own.Security && own.Security->Member))
+        {
+            own.Security.emplace().Member = _keys->Member(own.Node);
+            for (PathRule &path : own.Paths)
+            {
+                path.Security.reset();
+            }
+        }
+        auto node = std::make_unique<SimulatedNode>(std::move(own), Network, _ahead, gps, addFirst);
         SimulatedNode &added = *node;
         _nodes[key.empty() ? config.Node : key] = std::move(node);
         added.Reactor.Start();
         return added;
+    }
+
+    // Nodes that are added from now on are members of one fleet with keys, in place of the folder of keys in
+    // their configuration; with `false` they are not. Nodes with keys and nodes without do not hear each
+    // other.
+    void FlyWithKeys(bool withKeys = true)
+    {
+        _keys = withKeys ? std::make_unique<SimulatedKeys>(Network) : nullptr;
     }
 
     SimulatedNode &operator[](const std::string &node) { return *_nodes.at(node); }
@@ -261,6 +279,7 @@ private:
     }
 
     std::chrono::nanoseconds _ahead{0};
+    std::unique_ptr<SimulatedKeys> _keys;  // null: nodes have none
     std::map<std::string, std::unique_ptr<SimulatedNode>> _nodes;
 };
 

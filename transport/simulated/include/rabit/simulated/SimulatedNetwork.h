@@ -155,6 +155,7 @@ public:
                                                         const std::string &topic) const;
 
 private:
+    friend class SimulatedKeys;
     friend class SimulatedTransport;
     const std::shared_ptr<Simulated::NetworkCore> _core;
 };

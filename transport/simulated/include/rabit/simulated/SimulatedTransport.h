@@ -16,7 +16,7 @@ namespace Rabit
 // AnnouncementPeriod, Member and Log. Samples are limited to 64 MiB, as with Fast DDS.
 //
 // With a Member, each datagram takes the bytes that its seal adds, and arrives only where the seal opens. The
-// random bytes of the seal follow from the network's seed.
+// random bytes of the seal follow from the network's seed. SimulatedKeys.h makes members.
 class SimulatedTransport final : public Transport
 {
 public:
