@@ -13,6 +13,7 @@ std::vector<Gateway::LinkStatus> Outbound(const LinkNode &links)
             row.node = node;
             row.queue = queue;
             row.outbox = static_cast<std::uint32_t>(counters.Pending);
+            row.held_back = counters.HeldBack;
             row.fill = counters.Fill;
             row.accepted = counters.Accepted;
             row.delivered = counters.Delivered;

@@ -1,23 +1,11 @@
 #include "report/FullQueues.h"
 
-#include <algorithm>
-
 #include "names/ListedNames.h"
-#include "names/NodeTag.h"
 
 namespace Rabit
 {
 namespace
 {
-
-// True if the node tells in its beats that it holds messages of this one back: a queue of it is full or not
-// there yet, or its memory for large messages is used up.
-bool HoldsBack(const PeerTable::Peer &peer, std::uint32_t ownTag)
-{
-    return std::any_of(peer.Strains.begin(), peer.Strains.end(),
-                       [ownTag](const LinkStrain &strain)
-                       { return strain.What == LinkStrain::Kind::HeldBack && strain.Node == ownTag; });
-}
 
 // Adds the number of messages of other nodes that were put into the queue, and returns the nodes of which
 // messages wait.
@@ -108,7 +96,6 @@ void FullQueues::LookHere(const std::vector<QueueInfo> &queues, const Gateway::F
 void FullQueues::LookThere(const Gateway::Fleet &fleet, const PeersOverPaths &peers, Duration now,
                            std::vector<Gateway::Problem> &problems)
 {
-    const std::uint32_t ownTag = NodeTagOf(fleet.node, fleet.incarnation);
     std::map<std::pair<std::string, std::string>, Queue> links;
     for (const Gateway::LinkStatus &link : fleet.links)
     {
@@ -125,14 +112,14 @@ void FullQueues::LookThere(const Gateway::Fleet &fleet, const PeersOverPaths &pe
         }
         const PeerTable::Peer *const peer = peers.Find(link.node);
         const bool isLost = peer == nullptr || peer->State == Gateway::NodeState::LOST;
-        const bool isHeld = !isLost && HoldsBack(*peer, ownTag);
+        const bool isHeld = !isLost && link.held_back;
         const bool refuses = HasRefusedLately(queue, now);
         if ((!refuses && !isHeld) || still < (isLost || isHeld ? Patience : LongSending))
         {
             continue;
         }
         const std::string why = isLost   ? link.node + " is LOST"
-                                : isHeld ? "a queue of " + link.node + " is full, or not there yet"
+                                : isHeld ? "that queue is full, or not there yet"
                                          : link.node + " has taken none for more than 10 s";
         problems.push_back(
             {"send " + link.node + "/" + link.queue, link.node,

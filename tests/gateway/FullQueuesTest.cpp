@@ -11,8 +11,6 @@
 #include <vector>
 
 #include "BeatSamples.h"
-#include "names/NodeTag.h"
-#include "wire/BeatExtensions.h"
 
 namespace Rabit
 {
@@ -35,17 +33,12 @@ protected:
     }
 
     // A beat of uav1, which is heard until it is LOST 3.5 s later.
-    void HearUav(bool holdsBack = false)
+    void HearUav()
     {
         HeardBeat heard;
         heard.Node = "uav1";
         heard.Incarnation = 5;
         heard.Beat = BeatAt(now);
-        if (holdsBack)
-        {
-            const std::vector<LinkStrain> strains{{NodeTagOf("ground", 7), LinkStrain::Kind::HeldBack, 0, 0}};
-            BeatExtensions::Say(heard.Beat, strains);
-        }
         heard.Arrival = now;
         peers.OnBeat(heard);
     }
@@ -62,11 +55,11 @@ protected:
         stream.held_back = true;
         return stream;
     }
-    Gateway::LinkStatus &Waiting()
+    Gateway::LinkStatus &Waiting(const std::string &queue = "Commands")
     {
         Gateway::LinkStatus &link = fleet.links.emplace_back();
         link.node = "uav1";
-        link.queue = "Commands";
+        link.queue = queue;
         link.outbox = 5;
         return link;
     }
@@ -140,20 +133,34 @@ TEST_F(FullQueuesTest, AFullQueueThatRefusesIsAProblemUntilTenSecondsAfterTheLas
 
 TEST_F(FullQueuesTest, TheSenderIsToldOfAQueueOfAnotherNodeThatNobodyReads)
 {
-    Waiting();
+    Waiting().held_back = true;
     LookAfter(0s);
     now += 3s;
-    HearUav(true);
-    EXPECT_THAT(
-        LookAfter(0s),
-        ElementsAre("uav1: send uav1/Commands: messages wait: a queue of uav1 is full, or not there yet"));
+    HearUav();
+    EXPECT_THAT(LookAfter(0s), ElementsAre("uav1: send uav1/Commands: messages wait: that queue is full, or "
+                                           "not there yet"));
     fleet.links[0].refused_full = 3;
     ++fleet.links[0].expired;
     EXPECT_THAT(LookAfter(0s), ElementsAre("uav1: send uav1/Commands: no more messages may wait, and they "
-                                           "are refused: a queue of uav1 is full, or not there yet"))
+                                           "are refused: that queue is full, or not there yet"))
         << "a message that expires does not get on";
     ++fleet.links[0].delivered;
     EXPECT_THAT(LookAfter(0s), IsEmpty());
+}
+
+TEST_F(FullQueuesTest, EachQueueOfAnotherNodeHasARowOfItsOwn)
+{
+    Waiting("Commands").held_back = true;
+    Waiting("Notes");
+    Waiting("Areas").held_back = true;
+    LookAfter(0s);
+    now += 3s;
+    HearUav();
+    EXPECT_THAT(LookAfter(0s), ElementsAre("uav1: send uav1/Commands: messages wait: that queue is full, or "
+                                           "not there yet",
+                                           "uav1: send uav1/Areas: messages wait: that queue is full, or "
+                                           "not there yet"))
+        << "messages for Notes are only on their way";
 }
 
 TEST_F(FullQueuesTest, MessagesThatWaitWithoutARefusalAreNoProblemOfASenderByThemselves)

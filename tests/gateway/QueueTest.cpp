@@ -203,10 +203,9 @@ TEST_F(QueueTest, AQueueThatNobodyReadsIsAProblemOfBothSidesUntilItIsRead)
         uav.Problems(),
         HasSubstr("queue MissionControl: it is full, and its manager takes no messages from it, or too few: "
                   "those of `ground` wait"));
-    EXPECT_THAT(
-        ground.Problems(),
-        HasSubstr("send uav1/MissionControl: no more messages may wait, and they are refused: a queue "
-                  "of uav1 is full"));
+    EXPECT_THAT(ground.Problems(),
+                HasSubstr("send uav1/MissionControl: no more messages may wait, and they are refused: that "
+                          "queue is full"));
     while (!Take(mission).empty())
     {
         fleet.RunFor(1s);
@@ -214,6 +213,33 @@ TEST_F(QueueTest, AQueueThatNobodyReadsIsAProblemOfBothSidesUntilItIsRead)
     fleet.RunFor(1s);
     EXPECT_THAT(uav.Problems(), Not(HasSubstr("queue MissionControl")));
     EXPECT_THAT(ground.Problems(), Not(HasSubstr("send uav1")));
+}
+
+TEST_F(QueueTest, AQueueThatNobodyReadsIsNoProblemOfAnotherQueueOfThatNode)
+{
+    GatewayConfig config = AircraftConfig("uav2");
+    config.Accept.push_back({.Queue = "Camera", .Types = {"Uav::Goto"}});
+    SimulatedNode &second = fleet.Add(config);
+    second.AddIdleManager("MissionControl");
+    IdleManager &camera = second.AddIdleManager("Camera");
+    fleet.RunFor(2s);
+    for (std::uint32_t i = 1; i <= 1100; ++i)
+    {
+        EXPECT_TRUE(SendGoto(i, "uav2/MissionControl"));
+        fleet.RunFor(1ms);
+    }
+    for (std::uint32_t i = 1; i <= 80; ++i)
+    {
+        EXPECT_TRUE(SendGoto(i, "uav2/Camera"));
+        fleet.RunFor(100ms);
+        Take(camera);
+    }
+    EXPECT_TRUE(ground.LinkTo("uav2", "MissionControl").held_back);
+    EXPECT_FALSE(ground.LinkTo("uav2", "Camera").held_back);
+    EXPECT_THAT(second.Problems(), HasSubstr("queue MissionControl: it is full"));
+    EXPECT_THAT(second.Problems(), Not(HasSubstr("queue Camera")));
+    EXPECT_THAT(ground.Problems(), HasSubstr("send uav2/MissionControl: messages wait: that queue is full"));
+    EXPECT_THAT(ground.Problems(), Not(HasSubstr("uav2/Camera")));
 }
 
 TEST_F(QueueTest, AFullQueueHoldsBackOnlyTheNodesWhoseMessagesWait)

@@ -404,6 +404,7 @@ LinkSenderCounters LinkSender::Counters() const
     counters.Fill = _outbox.Fill();
     counters.Unacknowledged = _outbox.UnsettledCount();
     counters.UnacknowledgedParts = static_cast<std::size_t>(_outbox.NextSequence() - _outbox.FirstSequence());
+    counters.HeldBack = IsTurnedAway();
     counters.RoundTrip = _path.Times().Smoothed();
     return counters;
 }

@@ -211,6 +211,21 @@ TEST_F(LinkSenderRules, S2_ProbesWithTheFirstMessageWhenTheCreditIsUsedUp)
     EXPECT_LE(sent.size(), 20U);
 }
 
+TEST_F(LinkSenderRules, S2_TellsThatTheReceiverHoldsTheStreamBack)
+{
+    Contact();
+    a.Enqueue("2");
+    a.Enqueue("3");
+    a.Pass(0ms);
+    EXPECT_FALSE(a.SenderCounters().HeldBack) << "it may be on its way";
+    a.Hear(b.AckWith(1, {3}));
+    EXPECT_FALSE(a.SenderCounters().HeldBack) << "it was lost";
+    a.Hear(b.AckWith(1, {2, 3}));
+    EXPECT_TRUE(a.SenderCounters().HeldBack);
+    a.Hear(b.Ack(3));
+    EXPECT_FALSE(a.SenderCounters().HeldBack);
+}
+
 TEST_F(LinkSenderRules, S2_ResendsWhatWasTurnedAwayOnlyWhenCreditComes)
 {
     Contact(3);

@@ -29,6 +29,8 @@ struct LinkSenderCounters
     double Fill = 0.0;               // of what LinkOptions lets wait, messages or bytes, the fuller; 1: full
     std::size_t Unacknowledged = 0;  // of them, sent at least once, as a whole or in part
     std::size_t UnacknowledgedParts = 0;
+    bool HeldBack = false;  // the receiver has the first of them, or no memory for it: its queue is full, or
+                            // not there yet
     LinkTime RoundTrip{0};  // of the path to the node, smoothed (RFC 6298 SRTT); 0: not measured yet
 };
 
