@@ -6,12 +6,15 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "Command.h"
 #include "FleetSession.h"
 #include "FleetType.h"
 #include "InputLines.h"
+#include "JsonText.h"
 #include "Offers.h"
+#include "Replies.h"
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
 
@@ -29,6 +32,9 @@ struct Options
     std::string Type;
     std::string Value;
     double Expire = 0.0;
+    std::string Reply;   // type of the answer; empty: none is waited for
+    std::string Expect;  // members that the answer must have
+    std::string Idl;     // file with the type of the answer
 };
 
 struct Destination
@@ -146,21 +152,34 @@ bool AsksNoAnswer(const DynamicMessage &message)
     return queue != value.end() && queue->is_string() && queue->get<std::string>().empty();
 }
 
-// Sends one message and waits for its outcome.
+// The answers that each message waits for, and what they must have.
+struct Answers
+{
+    Replies &Queue;
+    std::size_t Count = 1;
+    Json Expected = Json::object();
+};
+
+// Sends one message and waits for its outcome, and for its answers.
 class Sender
 {
 public:
+    // Without `answers` it waits for none.
     Sender(const Options &options, FleetSession &session, Wakeup &wakeup,
-           std::shared_ptr<const DynamicType> type)
-        : _options(options), _session(session), _wakeup(wakeup), _type(std::move(type))
+           std::shared_ptr<const DynamicType> type, Answers *answers)
+        : _options(options), _session(session), _wakeup(wakeup), _type(std::move(type)), _answers(answers)
     {
     }
 
-    // Returns true if it was delivered.
+    // Returns true if it was delivered, and each expected answer came.
     bool Send(const std::string &json)
     {
         auto message = std::make_shared<DynamicMessage>(_type);
-        const std::string misfit = message->SetJson(json);
+        std::string misfit = message->SetJson(json);
+        if (misfit.empty() && _answers != nullptr)
+        {
+            misfit = _answers->Queue.Ask(*message);
+        }
         if (!misfit.empty())
         {
             Output::Talk(misfit);
@@ -184,35 +203,102 @@ public:
             Output::Talk("in doubt: " + reason);
             return Tell("in doubt", reason);
         }
-        if (receipt->Outcome() == QueueOutcome::Delivered && !_toldOfNoAnswer && AsksNoAnswer(*message))
+        const std::string outcome = ToString(receipt->Outcome());
+        if (receipt->Outcome() != QueueOutcome::Delivered)
+        {
+            return Tell(outcome, "");
+        }
+        if (_answers != nullptr)
+        {
+            return TellAnswers(outcome, *message);
+        }
+        if (!_toldOfNoAnswer && AsksNoAnswer(*message))
         {
             _toldOfNoAnswer = true;
             Output::Talk("`reply_to` is empty: the receiver tells nobody whether it does what it was sent");
         }
-        const std::string outcome = ToString(receipt->Outcome());
-        return Tell(outcome, "") && receipt->Outcome() == QueueOutcome::Delivered;
+        return Tell(outcome, "");
     }
 
     bool IsRead() const { return _isRead; }
 
 private:
+    // Returns true if it was delivered.
     bool Tell(const std::string &outcome, const std::string &reason)
     {
-        _isRead = _options.Common.Json ? Output::Object({{"to", _options.Address},
-                                                         {"type", _type->Name()},
-                                                         {"outcome", outcome},
-                                                         {"reason", reason}})
-                                       : Output::Line(outcome);
+        Json row = RowOf(outcome, reason);
+        if (_answers != nullptr)
+        {
+            row["answers"] = Json::array();
+        }
+        _isRead = _options.Common.Json ? Output::Object(row) : Output::Line(outcome);
         return outcome == "delivered";
+    }
+
+    bool TellAnswers(const std::string &outcome, const DynamicMessage &message)
+    {
+        if (!_options.Common.Json)
+        {
+            _isRead = Output::Line(outcome);
+        }
+        const std::vector<Json> came =
+            _answers->Queue.WaitFor(message, _answers->Count, _options.Common.Wait);
+        const bool isExpected =
+            std::all_of(came.begin(), came.end(),
+                        [this](const Json &answer) { return Reply::Has(answer, _answers->Expected); });
+        std::string reason;
+        if (came.size() < _answers->Count)
+        {
+            reason = std::to_string(_answers->Count - came.size()) + " of " +
+                     std::to_string(_answers->Count) + " answers did not come" +
+                     (_wakeup.IsInterrupted() ? ": interrupted" : " in time");
+        }
+        else if (!isExpected)
+        {
+            reason = "an answer is not as expected";
+        }
+        if (!reason.empty())
+        {
+            Output::Talk(reason);
+        }
+        if (_options.Common.Json)
+        {
+            Json row = RowOf(outcome, reason);
+            row["answers"] = came;
+            _isRead = Output::Object(row);
+        }
+        for (std::size_t i = 0; i < came.size() && !_options.Common.Json; ++i)
+        {
+            _isRead = Output::Line(JsonText(came[i]));
+        }
+        return reason.empty();
+    }
+
+    Json RowOf(const std::string &outcome, const std::string &reason) const
+    {
+        return {{"to", _options.Address}, {"type", _type->Name()}, {"outcome", outcome}, {"reason", reason}};
     }
 
     const Options &_options;
     FleetSession &_session;
     Wakeup &_wakeup;
     const std::shared_ptr<const DynamicType> _type;
+    Answers *const _answers;
     bool _isRead = true;
     bool _toldOfNoAnswer = false;
 };
+
+// Waits for the nodes that take the message, and returns them.
+std::vector<Taker> Meet(FleetSession &session, const Destination &to, const std::string &type)
+{
+    const auto takers = [&] { return TakersOf(to, type, session.Nodes()); };
+    if (to.Node == "*")
+    {
+        session.WaitForEverybody([&session] { return Offers::AreComplete(session.Nodes()); });
+    }
+    session.WaitForOffers(to.Node, [&] { return !takers().empty(); });
+    return takers();
+}
 
 int Run(const Options &options, Wakeup &wakeup)
 {
@@ -229,25 +315,19 @@ int Run(const Options &options, Wakeup &wakeup)
         return Usage;
     }
     GatewayConfig config = ConfigOf(options.Common);
-    config.Tool->AsksOf = {to->Node};
+    config.Tool->AsksOf = {options.Reply.empty() || !options.Idl.empty() ? to->Node : "*"};
     SendRule rule;
     rule.Expire = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.Expire));
     config.Send.push_back(rule);
-    FleetSession session(config, options.Common, wakeup);
-    const auto takers = [&] { return TakersOf(*to, options.Type, session.Nodes()); };
-    if (to->Node == "*")
+    auto session = std::make_unique<FleetSession>(config, options.Common, wakeup);
+    std::vector<Taker> found = Meet(*session, *to, options.Type);
+    if (!session->IsAnybodyThere())
     {
-        session.WaitForEverybody([&session] { return Offers::AreComplete(session.Nodes()); });
+        return session->NobodyThere();
     }
-    session.WaitForOffers(to->Node, [&] { return !takers().empty(); });
-    if (!session.IsAnybodyThere())
-    {
-        return session.NobodyThere();
-    }
-    const std::vector<Taker> found = takers();
     if (found.empty())
     {
-        Output::Talk(WhyNobody(*to, options.Type, session));
+        Output::Talk(WhyNobody(*to, options.Type, *session));
         return ProblemFound;
     }
     std::vector<std::string> holders;
@@ -263,25 +343,51 @@ int Run(const Options &options, Wakeup &wakeup)
                          "`; it gets nothing");
         }
     }
-    const FleetType type = FetchType(session, holders, options.Type, found.front().Definition,
-                                     session.Seconds() + options.Common.Wait);
+    const FleetType type = FetchType(*session, holders, options.Type, found.front().Definition,
+                                     session->Seconds() + options.Common.Wait);
     if (!type.Type || DynamicType::Register(type.Type) == nullptr)
     {
         Output::Talk(type.Type ? "this program has another definition of `" + options.Type + "`"
                                : type.Reason);
         return ProblemFound;
     }
-    Sender sender(options, session, wakeup, type.Type);
+    std::optional<Replies> replies;
+    std::optional<Answers> answers;
+    if (!options.Reply.empty())
+    {
+        const std::shared_ptr<const DynamicType> answer =
+            Reply::TypeOf(options.Reply, options.Idl, options.Common.Wait, *session);
+        Json expected = Json::object();
+        const std::string misfit =
+            answer && !options.Expect.empty() ? Reply::Expect(answer, options.Expect, expected) : "";
+        if (!misfit.empty())
+        {
+            Output::Talk("--expect: " + misfit);
+        }
+        if (!answer || !misfit.empty())
+        {
+            return answer ? Usage : ProblemFound;
+        }
+        // Nodes send nothing to a tool, so this program is a node from here on.
+        session.reset();
+        config.Tool.reset();
+        config.Accept.push_back({.Queue = Replies::Queue, .Types = {options.Reply}, .From = {to->Node}});
+        session = std::make_unique<FleetSession>(config, options.Common, wakeup);
+        replies.emplace(*session, config.Node);
+        found = Meet(*session, *to, options.Type);
+        answers.emplace(Answers{*replies, std::max<std::size_t>(found.size(), 1), std::move(expected)});
+    }
+    Sender sender(options, *session, wakeup, type.Type, answers ? &*answers : nullptr);
     bool good = holders.size() == found.size();
     if (options.Value != "-")
     {
         return sender.Send(options.Value) && good ? Good : ProblemFound;
     }
-    InputLines input([&session] { session.Notify(); });
+    InputLines input([&session] { session->Notify(); });
     while (!wakeup.IsInterrupted() && sender.IsRead())
     {
         InputLines::Line line;
-        session.WaitUntil(FleetSession::Forever, [&] { return input.Take(line); });
+        session->WaitUntil(FleetSession::Forever, [&] { return input.Take(line); });
         if (!line.Text)
         {
             break;  // the end
@@ -309,8 +415,19 @@ void AddSendCommand(CLI::App &app, Chosen &chosen)
     AddCommonOptions(*command, options->Common, 10.0);
     command->add_option("--expire", options->Expire, "Seconds after which it is not to be delivered any more")
         ->check(CLI::Range(0.1, 86400.0));
+    CLI::Option *const reply = command->add_option(
+        "--reply", options->Reply,
+        "Waits for the answer too: a message of this type, as Uav::CommandAck. Prints it");
+    command
+        ->add_option("--expect", options->Expect,
+                     "JSON: the members that the answer must have for exit code 0")
+        ->needs(reply);
+    command->add_option("--idl", options->Idl, "A file with the IDL of the answer, in place of asking for it")
+        ->needs(reply);
     AddExamples(*command, {"rabit send uav1/MissionControl Uav::GoHome '{}'",
                            R"(rabit send '*/MissionControl' Uav::GoHome '{"reason": "battery"}' --expire 5)",
+                           R"(rabit send uav1/MissionControl Uav::GoHome '{}' --reply Uav::CommandAck )"
+                           R"(--expect '{"stage": "COMMAND_ACCEPTED"}')",
                            "rabit send uav1/MissionControl Uav::Goto - --json"});
 }
 

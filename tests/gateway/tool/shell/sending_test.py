@@ -30,6 +30,34 @@ def lines_of_standard_input_are_sent_each(rabit):
     assert done.stderr.count("`reply_to` is empty") == 1, done
 
 
+def the_answer_is_waited_for_and_is_the_exit_code(rabit):
+    def go(latitude, *options):
+        return rabit.run("send", "uav1/MissionControl", "Uav::Goto", json.dumps({"latitude_deg": latitude}),
+                         "--reply", "Uav::CommandAck", *options, "--wait", "60")
+    idl = ("--idl", str(harness.ROOT / "idl/messages/uav.idl"))
+    done = go(91, *idl)
+    assert (done.returncode, done.stderr) == (0, ""), done
+    outcome, answer = done.stdout.splitlines()
+    assert outcome == "delivered" and json.loads(answer)["stage"] == "COMMAND_DECLINED", done
+    assert json.loads(answer)["id"] > 0 and json.loads(answer)["reason"], done
+    done = go(91, *idl, "--expect", '{"stage": "COMMAND_ACCEPTED"}', "--json")
+    row = json.loads(done.stdout)
+    assert done.returncode == 1 and row["outcome"] == "delivered", done
+    assert row["reason"] == "an answer is not as expected" and row["answers"][0]["node"] == "uav1", row
+    done = go(91, *idl, "--expect", '{"stages": "COMMAND_ACCEPTED"}')
+    assert done.returncode == 2 and "did you mean `stage`?" in done.stderr and done.stdout == "", done
+
+
+def an_answer_that_does_not_come_is_told(rabit):
+    idl = str(harness.ROOT / "idl/messages/uav.idl")
+    # An aircraft sends no answer of that type.
+    done = rabit.run("send", "uav1/MissionControl", "Uav::GoHome", "{}", "--reply", "Uav::Validation", "--idl", idl, "--wait", "8")
+    assert done.returncode == 1 and done.stdout == "delivered\n", done
+    assert done.stderr == "rabit: 1 of 1 answers did not come in time\n", done
+    done = rabit.run("send", "uav1/MissionControl", "Uav::TargetReport", "{}", "--reply", "Uav::Validation", "--idl", idl)
+    assert done.returncode == 1 and "has no text `reply_to`" in done.stderr, done
+
+
 def what_cannot_be_sent_is_told_with_the_nearest_right_word(rabit):
     for arguments, reason in ((("uav1/MissionControl", "Uav::GoHom", "{}"), "did you mean `Uav::GoHome`?"),
                               (("uav1/MissionContro", "Uav::GoHome", "{}"), "did you mean `MissionControl`?"),
@@ -73,7 +101,8 @@ def what_cannot_be_posted_is_told(rabit):
         assert done.returncode == code and reason in done.stderr and done.stdout == "", done
 
 
-TESTS = [a_message_is_sent_and_its_outcome_is_the_exit_code, lines_of_standard_input_are_sent_each,
+TESTS = [a_message_is_sent_and_its_outcome_is_the_exit_code, the_answer_is_waited_for_and_is_the_exit_code,
+         an_answer_that_does_not_come_is_told, lines_of_standard_input_are_sent_each,
          what_cannot_be_sent_is_told_with_the_nearest_right_word, a_message_is_posted_as_a_node_of_the_given_name,
          the_result_of_a_post_is_an_object_for_scripts,
          what_cannot_be_posted_is_told, a_post_of_another_type_than_the_readers_want_is_told]
