@@ -9,6 +9,7 @@
 
 #include "backfill/CredibleTime.h"
 #include "names/QosProfileWords.h"
+#include "names/SchemaText.h"
 
 namespace Rabit::Backfill
 {
@@ -68,7 +69,7 @@ std::uint32_t SeriesStreams::StreamOf(const Series &series, bool isLive, std::in
     RecordingStream stream;
     stream.Topic = series.Node + "/" + series.Message;
     stream.SchemaName = type == nullptr ? "" : type->Name();
-    stream.SchemaText = type == nullptr ? "" : type->IdlText();
+    stream.SchemaText = type == nullptr ? "" : SchemaText(type->IdlText());
     stream.Metadata = {{"rabit.kind", isLive ? "mirrored" : "backfilled"},
                        {"rabit.node", series.Node},
                        {"rabit.origin_incarnation", std::to_string(series.Incarnation)},

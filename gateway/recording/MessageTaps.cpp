@@ -13,6 +13,7 @@
 
 #include "names/NamePattern.h"
 #include "names/QosProfileWords.h"
+#include "names/SchemaText.h"
 #include "recording/JsonStreams.h"
 
 namespace Rabit
@@ -183,7 +184,7 @@ std::shared_ptr<MessageTap> MessageTaps::Tap(const std::string &name,
     RecordingStream stream;
     stream.Topic = origin.Node + "/" + origin.Message;
     stream.SchemaName = type->Name();
-    stream.SchemaText = type->IdlText();
+    stream.SchemaText = SchemaText(type->IdlText());
     stream.IsState = origin.IsState;
     stream.Metadata = {{"rabit.kind", origin.IsMirrored ? "mirrored" : "posted"},
                        {"rabit.node", origin.Node}};

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "names/NamePattern.h"
+#include "names/SchemaText.h"
 #include "recording/JsonStreams.h"
 
 namespace Rabit
@@ -94,7 +95,7 @@ std::uint32_t QueueStreams::StreamOf(const char *what, const QueueMessage &messa
     }
     const MessageType *type = MessageTypeRegistry::Find(std::string(message.Type));
     stream.SchemaName = type == nullptr ? "" : type->Name();
-    stream.SchemaText = type == nullptr ? "" : type->IdlText();
+    stream.SchemaText = type == nullptr ? "" : SchemaText(type->IdlText());
     stream.Metadata = {{"rabit.kind", std::string("queue ") + what},
                        {"rabit.node", _target->Node()},
                        {"rabit.peer", std::string(message.Node)},

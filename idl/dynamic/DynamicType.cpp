@@ -3,6 +3,7 @@
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <set>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 
 #include <rabit/dynamic/CdrBuilder.h>
 #include "dynamic/FreshValue.h"
+#include "dynamic/IdlTokens.h"
 #include "dynamic/JsonEncoder.h"
 #include "dynamic/JsonSink.h"
 #include "dynamic/KeySink.h"
@@ -17,6 +19,7 @@
 #include "dynamic/ReadType.h"
 #include "dynamic/TextSink.h"
 #include "dynamic/Walk.h"
+#include "model/Names.h"
 
 namespace Rabit
 {
@@ -120,17 +123,62 @@ public:
     std::string Reason;
 };
 
+// True if the word is a keyword in another case than IDL has it, which a name can be only if it is escaped.
+bool IsKeywordInAnotherCase(std::string_view word)
+{
+    return word != "TRUE" && word != "FALSE" &&
+           std::any_of(word.begin(), word.end(),
+                       [](unsigned char letter) { return std::isupper(letter) != 0; }) &&
+           RabitIdl::IsIdlKeyword(std::string(word));
+}
+
+// Recordings have texts for readers that know keywords in one case alone. A text that has no tokens stays as
+// it is: the guard says why it is refused. Adds the names that it escapes.
+std::string WithEscapedNames(std::string_view idlText, std::set<std::string> &escaped)
+{
+    std::string reason;
+    std::string text;
+    std::size_t copied = 0;
+    for (const Dynamic::Token &token : Dynamic::TokensOf(idlText, reason))
+    {
+        if (token.What == Dynamic::Token::Kind::Word && IsKeywordInAnotherCase(token.Text))
+        {
+            const auto at = static_cast<std::size_t>(token.Text.data() - idlText.data());
+            text += idlText.substr(copied, at - copied);
+            text += '_';
+            copied = at;
+            escaped.emplace(token.Text);
+        }
+    }
+    text += idlText.substr(copied);
+    return text;
+}
+
+// The reason quotes the name that is wrong in the text with escaped names.
+std::string AsWritten(std::string reason, const std::set<std::string> &escaped)
+{
+    for (const std::string &name : escaped)
+    {
+        const std::size_t at = reason.find("'_" + name + "'");
+        reason.erase(at == std::string::npos ? reason.size() : at + 1, 1);
+    }
+    return reason;
+}
+
 }  // namespace
 
 ParsedType DynamicType::Parse(std::string_view idlText, std::string_view typeName)
 {
     ParsedType parsed;
     std::string name(typeName);
-    auto shapes = Dynamic::ReadType(idlText, name, parsed.Reason);
+    std::set<std::string> escaped;
+    std::string text = WithEscapedNames(idlText, escaped);
+    auto shapes = Dynamic::ReadType(text, name, parsed.Reason);
+    parsed.Reason = AsWritten(std::move(parsed.Reason), escaped);
     if (shapes)
     {
         parsed.Type =
-            std::make_shared<const DynamicType>(std::move(name), std::string(idlText), std::move(shapes));
+            std::make_shared<const DynamicType>(std::move(name), std::move(text), std::move(shapes));
     }
     return parsed;
 }

@@ -66,8 +66,10 @@ private:
     std::vector<std::string> _scope;
 };
 
-void EmitComparison(TextBuilder &out, const std::string &name)
+// Declarations beside a type name it with its scope: a parameter may have the same name.
+void EmitComparison(TextBuilder &out, const Definition &definition)
 {
+    const std::string name = CppScopedName(definition.Scope, definition.Name);
     out.Line("bool operator==(const " + name + " &a, const " + name + " &b);");
     out.Line("inline bool operator!=(const " + name + " &a, const " + name + " &b)");
     out.Open();
@@ -94,6 +96,7 @@ void EmitMembers(TextBuilder &out, const StructDefinition &definition)
         out.Line(CppType(member.Type) + " " + member.Name + Initializer(member) + ";");
         const std::string bound = member.Name + "_bound";
         const bool isFree =
+            bound != definition.Name &&
             std::none_of(all.begin(), all.end(), [&](const Member *other) { return other->Name == bound; });
         if (BoundOf(member.Type) != 0 && isFree)
         {
@@ -113,9 +116,10 @@ void EmitPlainStruct(TextBuilder &out, const StructDefinition &definition)
     EmitMembers(out, definition);
     out.Close(";");
     out.Line("// For people.");
-    out.Line("::std::string ToString(const " + definition.Name + " &value);");
+    out.Line("::std::string ToString(const " + CppScopedName(definition.Scope, definition.Name) +
+             " &value);");
     out.Line("// IEEE 754 comparison of floating point members: NaN is unlike everything.");
-    EmitComparison(out, definition.Name);
+    EmitComparison(out, definition);
     out.Line();
 }
 
@@ -144,7 +148,7 @@ void EmitMessage(TextBuilder &out, const StructDefinition &definition)
     out.Line("int DeSerialize(::std::uint8_t *buf, int len, int stype = 0) override;");
     out.Close(";");
     out.Line("// Compares the members above, not the time stamp. IEEE 754: NaN is unlike everything.");
-    EmitComparison(out, definition.Name);
+    EmitComparison(out, definition);
     out.Line();
 }
 
@@ -159,17 +163,18 @@ void EmitEnum(TextBuilder &out, const EnumDefinition &definition)
     }
     out.Close(";");
     out.Line("// The enumerator's name, or the number if it is not declared.");
-    out.Line("::std::string ToString(" + definition.Name + " value);");
+    const std::string name = CppScopedName(definition.Scope, definition.Name);
+    out.Line("::std::string ToString(" + name + " value);");
     out.Line("// The enumerator of that name. False, and nothing changed, if there is none.");
-    out.Line("bool FromText(::std::string_view text, " + definition.Name + " &value);");
+    out.Line("bool FromText(::std::string_view text, " + name + " &value);");
     out.Line();
 }
 
 void EmitBitmask(TextBuilder &out, const BitmaskDefinition &definition)
 {
-    const std::string &name = definition.Name;
+    const std::string name = CppScopedName(definition.Scope, definition.Name);
     const std::string bits = UnsignedOf(definition.BitBound);
-    out.Line("enum class " + name + " : " + bits);
+    out.Line("enum class " + definition.Name + " : " + bits);
     out.Open();
     for (const auto &bit : definition.Bits)
     {
@@ -225,7 +230,26 @@ void EmitConst(TextBuilder &out, const ConstDefinition &definition)
     out.Line();
 }
 
-void EmitDefinition(TextBuilder &out, const Definition &definition)
+// The scoped names of all definitions and modules.
+std::set<std::string> NamesOf(const Model &model)
+{
+    std::set<std::string> names;
+    for (const auto &definition : model.Definitions)
+    {
+        names.insert(ScopedName(definition->Scope, definition->Name));
+        std::vector<std::string> scope = definition->Scope;
+        while (!scope.empty())
+        {
+            const std::string module = scope.back();
+            scope.pop_back();
+            names.insert(ScopedName(scope, module));
+        }
+    }
+    return names;
+}
+
+// `names`: those that are taken.
+void EmitDefinition(TextBuilder &out, const Definition &definition, const std::set<std::string> &names)
 {
     out.Comment(definition.Comment);
     if (const auto *structure = dynamic_cast<const StructDefinition *>(&definition))
@@ -235,7 +259,7 @@ void EmitDefinition(TextBuilder &out, const Definition &definition)
     else if (const auto *choice = dynamic_cast<const UnionDefinition *>(&definition))
     {
         EmitUnionClass(out, *choice);
-        EmitComparison(out, choice->Name);
+        EmitComparison(out, *choice);
         out.Line();
     }
     else if (const auto *enumeration = dynamic_cast<const EnumDefinition *>(&definition))
@@ -253,10 +277,11 @@ void EmitDefinition(TextBuilder &out, const Definition &definition)
             return;
         }
         out.Line("using " + alias->Name + " = " + CppType(alias->Type) + ";");
-        if (BoundOf(alias->Type) != 0)
+        const std::string bound = alias->Name + "_bound";
+        if (BoundOf(alias->Type) != 0 && names.count(ScopedName(alias->Scope, bound)) == 0)
         {
-            out.Line("inline constexpr ::std::size_t " + alias->Name +
-                     "_bound = " + std::to_string(BoundOf(alias->Type)) + ";");
+            out.Line("inline constexpr ::std::size_t " + bound + " = " +
+                     std::to_string(BoundOf(alias->Type)) + ";");
         }
         out.Line();
     }
@@ -382,13 +407,14 @@ std::string EmitHeader(const Model &model)
     }
     out.Line();
     {
+        const std::set<std::string> names = NamesOf(model);
         Namespaces namespaces(out);
         for (const auto &definition : model.Definitions)
         {
             if (definition->InMainFile)
             {
                 namespaces.Enter(definition->Scope);
-                EmitDefinition(out, *definition);
+                EmitDefinition(out, *definition, names);
             }
         }
     }

@@ -88,12 +88,12 @@ std::string SelectedBy(const UnionDefinition &definition, const Case &item)
 
 void EmitUnionClass(TextBuilder &out, const UnionDefinition &definition)
 {
-    const std::string &name = definition.Name;
+    const std::string name = CppScopedName(definition.Scope, definition.Name);
     const std::string selector = CppType(definition.Discriminator);
     out.Line("// Holds the one member that the discriminator selects. A new one selects `" +
              definition.Cases.front().Content.Name + "`.");
     out.Line("// Reading a member that is not selected throws std::logic_error.");
-    out.Line("class " + name);
+    out.Line("class " + definition.Name);
     out.Open();
     out.Label("public:");
     out.Line("// The discriminator.");

@@ -1,5 +1,6 @@
 // The rules by which ModelReader refuses definitions that parse but have no faithful C++ class or no plain
 // XCDR1 encoding.
+#include "model/LibraryNames.h"
 #include "model/ModelReader.h"
 #include "model/Names.h"
 
@@ -17,13 +18,22 @@ void ModelReader::CheckName(TreeNode node, const std::string &name)
     }
 }
 
-void ModelReader::CheckTypeName(TreeNode node, const std::string &name)
+void ModelReader::CheckNameInScope(TreeNode node, const std::string &name)
 {
     CheckName(node, name);
     if (IsGeneratorName(name))
     {
         Refuse(node, "'" + name + "' is the name of a function that is generated beside the types");
     }
+    if (_scope.empty() && IsLibraryName(name))
+    {
+        Refuse(node, "'" + name + "' is a name of the C library; put it into a module of another name");
+    }
+}
+
+void ModelReader::CheckTypeName(TreeNode node, const std::string &name)
+{
+    CheckNameInScope(node, name);
     const bool inRabit = (_scope.size() == 1 && _scope[0] == "Rabit") ||
                          (_scope.size() >= 2 && _scope[0] == "Rabit" && _scope[1] == "Idl");
     if (inRabit)

@@ -83,7 +83,7 @@ void ModelReader::ReadDefinitions(TreeNode first)
         switch (TreeKindOf(node))
         {
             case TreeModule:
-                CheckName(node, TreeName(node));
+                CheckNameInScope(node, TreeName(node));
                 if (_scope.empty() && std::string(TreeName(node)) == "std")
                 {
                     Refuse(node, "'std' is the namespace of the C++ standard library");

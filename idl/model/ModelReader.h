@@ -41,6 +41,8 @@ private:
     Literal ReadLiteral(TreeNode value);
 
     void CheckName(TreeNode node, const std::string &name);
+    // For modules and all that stands in them.
+    void CheckNameInScope(TreeNode node, const std::string &name);
     void CheckTypeName(TreeNode node, const std::string &name);
     void CheckMemberNames(TreeNode node, const StructDefinition &definition);
     void CheckAnnotations(TreeNode node);

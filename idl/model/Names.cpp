@@ -4,6 +4,8 @@
 #include <cctype>
 #include <set>
 
+#include "model/LibraryNames.h"
+
 namespace RabitIdl
 {
 namespace
@@ -30,26 +32,21 @@ const std::set<std::string> &CppKeywords()
     return words;
 }
 
-// Macros of standard headers that the generated code or Rabit's headers bring in.
-const std::set<std::string> &Macros()
+// How a name begins that is of a family of macros in generated code; empty if it is of none. The members of
+// a family differ from one version of a library to the next.
+std::string MacroFamily(const std::string &name)
 {
-    static const std::set<std::string> words{
-        "assert",       "errno",      "NULL",           "EOF",          "BUFSIZ",
-        "FILENAME_MAX", "stdin",      "stdout",         "stderr",       "offsetof",
-        "NAN",          "INFINITY",   "HUGE_VAL",       "EXIT_SUCCESS", "EXIT_FAILURE",
-        "RAND_MAX",     "CHAR_BIT",   "CHAR_MAX",       "CHAR_MIN",     "SCHAR_MAX",
-        "SCHAR_MIN",    "UCHAR_MAX",  "SHRT_MAX",       "SHRT_MIN",     "USHRT_MAX",
-        "INT_MAX",      "INT_MIN",    "UINT_MAX",       "LONG_MAX",     "LONG_MIN",
-        "ULONG_MAX",    "LLONG_MAX",  "LLONG_MIN",      "ULLONG_MAX",   "SIZE_MAX",
-        "INT8_MAX",     "INT8_MIN",   "UINT8_MAX",      "INT16_MAX",    "INT16_MIN",
-        "UINT16_MAX",   "INT32_MAX",  "INT32_MIN",      "UINT32_MAX",   "INT64_MAX",
-        "INT64_MIN",    "UINT64_MAX", "M_PI",           "M_E",          "SEEK_SET",
-        "SEEK_CUR",     "SEEK_END",   "CLOCKS_PER_SEC", "SIGINT",       "SIGTERM",
-        "EINVAL",       "ENOMEM",     "EAGAIN",         "EIO",          "ERANGE",
-        "EDOM",         "major",      "minor",          "makedev",      "isnan",
-        "isinf",        "FLT_MAX",    "FLT_MIN",        "DBL_MAX",      "DBL_MIN",
-        "TIMER_ABSTIME"};
-    return words;
+    for (const char *const prefix : {"BOOST_", "CLONE_", "FASTCDR_", "PTHREAD_", "SCHED_"})
+    {
+        if (name.starts_with(prefix))
+        {
+            return prefix;
+        }
+    }
+    // SYS_read.
+    return name.starts_with("SYS_") && std::islower(static_cast<unsigned char>(name.c_str()[4])) != 0
+               ? "SYS_ and a lower-case letter"
+               : "";
 }
 
 }  // namespace
@@ -60,9 +57,13 @@ std::string WhyNotCpp(const std::string &name)
     {
         return "is a keyword of C++";
     }
-    if (Macros().count(name) != 0)
+    if (IsLibraryMacro(name))
     {
-        return "is a macro of the C++ standard headers";
+        return "is a macro of the headers that generated code includes";
+    }
+    if (const std::string family = MacroFamily(name); !family.empty())
+    {
+        return "begins with " + family + ", as macros in generated code do";
     }
     // Private members of Rabit and of generated code begin with an underscore, too.
     return name[0] == '_' || name.find("__") != std::string::npos ? "is reserved in C++" : "";

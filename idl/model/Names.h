@@ -7,8 +7,7 @@
 namespace RabitIdl
 {
 
-// The reason why a name cannot be used in C++ (a keyword, a reserved name, a macro of the standard
-// headers); empty if it can.
+// The reason why a name cannot be used in C++ (a keyword, a reserved name, a macro); empty if it can.
 std::string WhyNotCpp(const std::string &name);
 // True if message classes already have a member of that name, from Rabit::RabitMessage or from the
 // generator.

@@ -3,6 +3,7 @@
 #include "constructs.idl.h"
 #include "keys.idl.h"
 #include "limits.idl.h"
+#include "names.idl.h"
 #include "uav.idl.h"
 
 static_assert(__cplusplus < 202002L, "this file is meant to be compiled as C++17");

@@ -10,6 +10,7 @@
 #include "clocks/GpsTime.h"
 #include "names/NamePattern.h"
 #include "names/QosProfileWords.h"
+#include "names/SchemaText.h"
 
 namespace Rabit::Tool
 {
@@ -184,7 +185,7 @@ std::shared_ptr<LiveTaps::Tap> LiveTaps::MakeTap(const std::string &name)
     LiveProtocol::Channel channel;
     channel.Topic = name;
     channel.SchemaName = type->Name();
-    channel.SchemaText = type->IdlText();
+    channel.SchemaText = SchemaText(type->IdlText());
     tap->SetChannel(_server.AddChannel(std::move(channel), isState));
     std::vector<Tap::Made> made;
     for (const PanelMapping &panel : _panels)

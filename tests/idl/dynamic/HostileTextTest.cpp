@@ -33,6 +33,7 @@ TEST(HostileText, OfAnotherLanguageIsRefused)
     EXPECT_EQ(WhyNot("hello"), "line 1: expected a definition, not 'hello'");
     EXPECT_EQ(WhyNot("#include \"/etc/passwd\"\nstruct S { long a; };"), "line 1: unexpected '#'");
     EXPECT_EQ(WhyNot("const long A = 1 + 1;"), "line 1: unexpected '='");
+    EXPECT_EQ(WhyNot("Struct S { long a; };"), "line 1: expected a definition, not 'Struct'");
     EXPECT_EQ(WhyNot("interface I { };"), "line 1: expected a definition, not 'interface'");
     EXPECT_EQ(WhyNot("struct S { long a; }"), "line 1: expected ';', not the end");
     EXPECT_EQ(WhyNot("struct S { wstring a; };"), "line 1: expected a name, not 'wstring'");

@@ -134,7 +134,7 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"int8<=3 a", "`int8<=3` is no type"}, Bad{"pkg/srv/Thing a", "`pkg/srv/Thing` is no type"},
         Bad{"int8", "expected a type and a name, found `int8`"}, Bad{"int8 1a", "`1a` is no name of a field"},
         Bad{"int8 default", "'default' is a keyword of C++"},
-        Bad{"uint8 EINVAL = 1", "'EINVAL' is a macro of the C++ standard headers"},
+        Bad{"uint8 EINVAL = 1", "'EINVAL' is a macro of the headers that generated code includes"},
         Bad{"Part A = 1", "a constant cannot be of this type"}));
 
 TEST(MsgToIdl, RefusesANameThatIsThereTwice)

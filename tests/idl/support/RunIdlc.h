@@ -11,6 +11,8 @@ extern const char *const Idlc;
 extern const char *const Plugin;
 extern const char *const Messages;
 extern const char *const Refused;
+extern const char *const Compiler;
+extern const char *const IncludeOptions;  // of the compiler, for the headers of generated code
 extern const char *const RosIdl;
 extern const char *const RosPackages;
 extern const char *const Px4Messages;

@@ -53,6 +53,7 @@ const NOT_READ = {
     "Growth::Rows": "sequences of sequences",
     "Limits::Extremes": "characters that select a case",
     "Shadow::Both": "names that begin with ::",
+    "Words::Uses::All": "bitmasks",
 };
 
 const cases = {

@@ -14,6 +14,7 @@
 #include "RandomSample.h"
 #include "Samples.h"
 #include "dynamic/ReadType.h"
+#include "names/SchemaText.h"
 #include "recording/mcap/McapWriter.h"
 
 namespace
@@ -78,7 +79,7 @@ public:
             const auto parsed = Rabit::DynamicType::Parse(type.IdlText(), name);
             std::string reason;
             const auto shapes = Rabit::Dynamic::ReadType(type.IdlText(), name, reason);
-            const std::uint16_t schema = _writer.AddSchema(name, "omgidl", type.IdlText());
+            const std::uint16_t schema = _writer.AddSchema(name, "omgidl", Rabit::SchemaText(type.IdlText()));
             const std::uint16_t channel = *_writer.AddChannel(schema, name, "cdr");
             Add(channel, *parsed.Type, parsed.Type->DefaultSample());
             for (const Sample &sample : AllSamples())

@@ -43,7 +43,8 @@ class DynamicType final : public MessageType, public std::enable_shared_from_thi
 public:
     // Returns the type of that name, such as `Uav::Pose`, in an IDL text. Returns a reason and no type in
     // three cases: the generator would refuse the text, it does not define that message, or it exceeds the
-    // limits in idl/dynamic/README.md. Never throws on account of the text. Texts are parsed one at a time:
+    // limits in idl/dynamic/README.md. Names that are keywords in another case (`String`) need no underscore
+    // here: IdlText of the type has it. Never throws on account of the text. Texts are parsed one at a time:
     // calls wait for each other.
     static ParsedType Parse(std::string_view idlText, std::string_view typeName);
     // Adds a type to the MessageTypeRegistry until the process ends. From then on configurations may name
