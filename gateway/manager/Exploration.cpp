@@ -58,6 +58,7 @@ NodeReports::Kind KindOf(FleetExplorer::Report report)
     return report == Report::Air         ? NodeReports::Kind::Air
            : report == Report::LastLines ? NodeReports::Kind::LastLines
            : report == Report::LinesFrom ? NodeReports::Kind::LinesFrom
+           : report == Report::Foreign   ? NodeReports::Kind::Foreign
                                          : NodeReports::Kind::Echo;
 }
 

@@ -15,6 +15,7 @@
 #include "report/ManagerTroubles.h"
 #include "report/OtherGateways.h"
 #include "report/PathReport.h"
+#include "wire/ForeignReport.h"
 
 namespace Rabit
 {
@@ -167,6 +168,8 @@ std::optional<std::string> GatewayManager::Parts::ReportOf(NodeReports::Name nam
             return _config.Reports ? std::optional(_log.Last(name.Argument)) : std::nullopt;
         case NodeReports::Kind::LinesFrom:
             return _config.Reports ? _log.From(name.Argument) : std::nullopt;
+        case NodeReports::Kind::Foreign:
+            return _config.Reports ? ForeignReport::TextOf(_fleet->foreign) : std::string();
         case NodeReports::Kind::Echo:
             break;
     }

@@ -110,6 +110,7 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfBuffers(config, before, Doctor::LookAtMachine()));
         Append(findings, Doctor::OfMulticast(config, used, network, Doctor::NodesThatHear(fleet)));
         Append(findings, Doctor::OfOtherInterfaces(config, used, network, anyNode));
+        Append(findings, Doctor::OfLoopback(config, used, network));
         // If a name is given, this program first listens under the usual one.
         CommonOptions unnamed = options;
         unnamed.Node.Node.clear();

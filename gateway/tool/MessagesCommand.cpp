@@ -7,6 +7,7 @@
 
 #include "Command.h"
 #include "FleetSession.h"
+#include "ForeignTopics.h"
 #include "Meter.h"
 #include "Offers.h"
 #include "SafeText.h"
@@ -24,6 +25,7 @@ struct Options
 {
     CommonOptions Common;
     double For = 0.0;
+    bool Foreign = false;
 };
 
 // Returns the values a second of each message, the sum over its publishers, measured for `seconds`.
@@ -153,6 +155,10 @@ int Run(const Options &all, Wakeup &wakeup)
     {
         return Good;
     }
+    if (all.Foreign && !ShowForeignTopics(session, options))
+    {
+        return Good;
+    }
     const std::vector<std::string> differences = Offers::Differences(nodes);
     Output::Talk(differences);
     if (!Offers::AreComplete(nodes))
@@ -175,6 +181,8 @@ void AddMessagesCommand(CLI::App &app, Chosen &chosen)
         ->add_option("--for", options->For,
                      "Listen to all of them for so many seconds, and tell how often they come")
         ->check(CLI::Range(0.1, 86400.0));
+    command->add_flag("--foreign", options->Foreign,
+                      "Also the topics of programs without a gateway, as of ROS 2, that nodes read or write");
     AddExamples(*command, {"rabit messages --domain 7", "rabit messages --for 3", "rabit messages --json"});
 }
 

@@ -4,6 +4,7 @@
 
 #include "Command.h"
 #include "FleetSession.h"
+#include "ForeignTopics.h"
 #include "NodeProblems.h"
 #include "Offers.h"
 #include "SafeText.h"
@@ -20,6 +21,7 @@ struct Options
 {
     CommonOptions Common;
     bool Watch = false;
+    bool Foreign = false;
 };
 
 template <typename Items, typename NameOf>
@@ -199,6 +201,7 @@ int Show(FleetSession &session, const Options &options, bool &stillRead)
     const std::vector<FleetSession::Node> nodes = session.Nodes();
     const std::vector<Gateway::Problem> problems = ProblemsOf(fleet, nodes);
     stillRead = options.Common.Json ? ShowJson(fleet, nodes, problems) : ShowTable(fleet, nodes, problems);
+    stillRead = stillRead && (!options.Foreign || ShowForeignTopics(session, options.Common));
     return problems.empty() ? Good : ProblemFound;
 }
 
@@ -243,6 +246,8 @@ void AddNodesCommand(CLI::App &app, Chosen &chosen)
         AddCommand<Options>(app, chosen, "nodes", "Who is there, what each has, and what is wrong", &Run);
     AddCommonOptions(*command, options->Common, 1.8);
     command->add_flag("--watch", options->Watch, "Show it again each second until Ctrl-C");
+    command->add_flag("--foreign", options->Foreign,
+                      "Also the topics of programs without a gateway, as of ROS 2, that nodes read or write");
     AddExamples(*command, {"rabit nodes --domain 7", "rabit nodes --watch", "rabit nodes --json --wait 5"});
 }
 

@@ -13,6 +13,7 @@
 #include "SimulatedFleet.h"
 #include "types/TypeQuestions.h"
 #include "wire/BeatExtensions.h"
+#include "wire/ForeignReport.h"
 
 namespace Rabit
 {
@@ -173,6 +174,31 @@ TEST_F(NodeReportsTest, MoreNodesThanAreAskedAtOnceAllAnswer)
     {
         EXPECT_TRUE(explorer.TakeReport(name, Report::Air).has_value()) << name;
     }
+}
+
+TEST_F(NodeReportsTest, TheForeignTopicsOfANodeAreToldWithTheirStates)
+{
+    GatewayConfig config;
+    config.Node = "lab";
+    config.Foreign.push_back({.Topic = "rt/pose", .Type = "Uav::Pose", .Local = "Lab/Pose"});
+    fleet.Add(config);
+    AddAircraft(false);
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(3s);
+    explorer.AskForReport("lab", Report::Foreign);
+    explorer.AskForReport("uav1", Report::Foreign);
+    fleet.RunFor(3s);
+    const auto told = explorer.TakeReport("lab", Report::Foreign);
+    ASSERT_TRUE(told.has_value());
+    const auto topics = ForeignReport::TopicsIn(told->Text);
+    ASSERT_EQ(topics.size(), 1u);
+    EXPECT_EQ(topics[0].topic, "rt/pose");
+    EXPECT_EQ(topics[0].local, "Lab/Pose");
+    EXPECT_EQ(topics[0].state, Gateway::NodeState::LOST);
+    EXPECT_THAT(topics[0].reason, HasSubstr("no program writes `rt/pose`"));
+    const auto nothing = explorer.TakeReport("uav1", Report::Foreign);
+    ASSERT_TRUE(nothing.has_value()) << "it has none, and says so";
+    EXPECT_TRUE(ForeignReport::TopicsIn(nothing->Text).empty());
 }
 
 TEST_F(NodeReportsTest, ANodeThatHasNoLinesYetAnswersWhenThereIsOne)

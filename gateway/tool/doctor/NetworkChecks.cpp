@@ -182,6 +182,27 @@ std::vector<Finding> OfOtherParticipants(const GatewayConfig &config, const Netw
              "nothing, unless a node is among them: docs/how_to/connect.md"}};
 }
 
+std::vector<Finding> OfLoopback(const GatewayConfig &config, const std::vector<Interface> &used,
+                                const NetworkFacts &facts)
+{
+    const std::set<std::string> &alone = facts.OnLoopbackAlone;
+    const auto isLoopback = [](const std::string &peer)
+    { return peer.rfind("127.", 0) == 0 || peer == "localhost"; };
+    if (alone.empty() || std::any_of(config.Peers.begin(), config.Peers.end(), isLoopback))
+    {
+        return {};
+    }
+    const bool isMeant =
+        std::all_of(used.begin(), used.end(), [](const Interface &one) { return one.IsLoopback; });
+    const bool isOne = alone.size() == 1;
+    return {{isMeant ? Level::Problem : Level::Note, "this machine alone",
+             Listed(alone) + (isOne ? " is" : " are") + " in domain " + std::to_string(config.Domain) +
+                 " on this machine, and " + (isOne ? "takes" : "take") +
+                 " no multicast: nodes without `peers` do not meet " + (isOne ? "it" : "them"),
+             "list 127.0.0.1 in `peers`, with lo among the `interfaces`; or start programs of ROS 2 with "
+             "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET"}};
+}
+
 std::vector<Finding> OfDomains(const GatewayConfig &config, const NetworkFacts &facts, bool anyNode)
 {
     std::vector<Finding> findings;

@@ -38,6 +38,10 @@ std::vector<Finding> OfSilentDomains(const GatewayConfig &config, const NetworkF
 // others. `anyNode`: a node was heard on those that are used.
 std::vector<Finding> OfOtherInterfaces(const GatewayConfig &config, const std::vector<Interface> &used,
                                        const NetworkFacts &facts, bool anyNode);
+// Finds participants of our domain on this machine that hear no multicast. They are a problem if the loopback
+// interface is the only one that is used: then they are meant.
+std::vector<Finding> OfLoopback(const GatewayConfig &config, const std::vector<Interface> &used,
+                                const NetworkFacts &facts);
 // Finds nodes of our domain with keys if this program has none, or hears none with its own, and programs
 // without keys if this one has some. `used`: interfaces; this program is heard at their addresses, too.
 // `anyNode`: a node was heard.

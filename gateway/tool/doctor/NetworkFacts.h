@@ -33,6 +33,9 @@ struct NetworkFacts
     // Participants that were heard only on interfaces that are not used: their addresses, by domain and
     // interface.
     std::map<int, std::map<std::string, std::set<std::string>>> Elsewhere{};
+    // Participants of the configured domain on this machine that answered only at its loopback address:
+    // LabelOf each. They neither hear nor send multicast. Never nodes of Rabit.
+    std::set<std::string> OnLoopbackAlone{};
 };
 
 }  // namespace Rabit::Tool::Doctor

@@ -42,6 +42,12 @@ constexpr std::chrono::milliseconds BetweenCalls{800};
 // After the first call, with so many others goes a sealed one, if no node is heard by then.
 constexpr int SealedCalls = 3;
 
+// Participants of this machine that are called at the loopback address, as ROS 2 does; and the
+// calls from one of them to the next. Nothing is lost on the way.
+constexpr int MostOnLoopback = 32;
+constexpr int BetweenLoopbackCalls = 3;
+constexpr const char *LoopbackAddress = "127.0.0.1";
+
 sockaddr_in AddressOf(const std::string &address, int port)
 {
     sockaddr_in to{};
@@ -180,6 +186,7 @@ public:
                 error = error.empty() ? Call(mouth, domain, 0) : error;
             }
         }
+        CallOnLoopback(0);
         _thread = std::thread([this] { Listen(); });
     }
 
@@ -201,6 +208,14 @@ public:
                 AddTo(facts.Elsewhere[place.Domain][place.Interface], place.Address, MostAddresses);
             }
         }
+        for (const auto &[participant, label] : _onLoopback)
+        {
+            if (!_onUsed.contains(participant) && !_answered.contains(participant) &&
+                !_elsewhere.contains(participant))
+            {
+                AddTo(facts.OnLoopbackAlone, label, MostNames);
+            }
+        }
         return facts;
     }
 
@@ -212,6 +227,7 @@ private:
         int Domain = -1;          // announcements of that domain
         std::string Interface{};  // answers to what was sent there; both unset: this machine's own multicast
         bool IsIgnored = false;
+        bool IsLoopback = false;  // answers to what was sent to the loopback address
     };
 
     // How to send on an interface: sockets of _ears.
@@ -275,6 +291,11 @@ private:
             _ears.push_back({std::move(socket), -1, one.Name});
             _ears.push_back({std::move(alone), -1, "", true});
         }
+        if (UdpSocket loopback = OpenSocket(LoopbackAddress, 0); loopback.IsOpen() && _domain >= 0)
+        {
+            _loopbackEar = _ears.size();
+            _ears.push_back({std::move(loopback), -1, "", false, true});
+        }
     }
 
     // Announces a participant on the interface, so that answers tell on which interface it was heard. Each
@@ -326,6 +347,23 @@ private:
         return IsNodeHeard(_facts, _domain, _ownSealedSessions);
     }
 
+    void CallOnLoopback(int number) const
+    {
+        if (!_loopbackEar)
+        {
+            return;
+        }
+        const UdpSocket &socket = _ears[*_loopbackEar].Where;
+        ParticipantId id = _id;
+        id[id.size() - 2] = static_cast<std::uint8_t>(2 * Calls + number);
+        id.back() = 0;
+        const auto call = MakeCall(id, {127, 0, 0, 1}, static_cast<std::uint16_t>(PortOf(socket)));
+        for (int index = 0; index < MostOnLoopback; ++index)
+        {
+            static_cast<void>(Send(socket, LoopbackAddress, AlonePort(_domain, index), call));
+        }
+    }
+
     std::vector<std::uint8_t> TrialOn(std::size_t interface) const
     {
         std::vector<std::uint8_t> bytes(_id.size() + 1);
@@ -357,6 +395,10 @@ private:
             }
             if (called < Calls && Clock::now() >= callAt)
             {
+                if (called % BetweenLoopbackCalls == 0)
+                {
+                    CallOnLoopback(called);
+                }
                 CallAgain(called++);
                 callAt = Clock::now() + BetweenCalls;
             }
@@ -384,7 +426,7 @@ private:
         {
             return;
         }
-        if (ear.Domain < 0 && ear.Interface.empty())
+        if (ear.Domain < 0 && ear.Interface.empty() && !ear.IsLoopback)
         {
             for (std::size_t i = 0; i < _interfaces.size(); ++i)
             {
@@ -410,8 +452,20 @@ private:
         {
             return;
         }
+        if (ear.IsLoopback)
+        {
+            if (!heard->IsNode && _onLoopback.size() < MostParticipants)
+            {
+                _onLoopback[heard->Sender] = LabelOf(*heard);
+            }
+            return;
+        }
         if (ear.Domain < 0)
         {
+            if (_answered.size() < MostParticipants)
+            {
+                _answered.insert(heard->Sender);
+            }
             AddTo(_facts.Trials[ear.Interface].AnsweredFrom, datagram.From, MostAddresses);
             _unanswered.erase(heard->Sender);
             return;
@@ -489,11 +543,14 @@ private:
     int _trialPort = 0;
     std::vector<Ear> _ears;
     std::vector<Mouth> _mouths;
+    std::optional<std::size_t> _loopbackEar;
     std::map<ParticipantId, Unanswered> _unanswered;  // for the thread alone
     mutable std::mutex _mutex;
     NetworkFacts _facts;
-    std::set<ParticipantId> _onUsed;            // heard on an interface that is used
-    std::map<ParticipantId, Place> _elsewhere;  // heard on another one
+    std::set<ParticipantId> _onUsed;                   // heard on an interface that is used
+    std::map<ParticipantId, Place> _elsewhere;         // heard on another one
+    std::set<ParticipantId> _answered;                 // what was sent by multicast
+    std::map<ParticipantId, std::string> _onLoopback;  // answered at the loopback address; LabelOf each
     std::thread _thread;
 };
 

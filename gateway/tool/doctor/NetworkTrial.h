@@ -22,6 +22,9 @@ namespace Rabit::Tool::Doctor
 // announcement. It answers newcomers of an address alone once one of them has addressed it alone
 // (DirectAnnouncements). So participants that were heard and did not answer also get a call of their own,
 // from another participant of this address: its answers do not count.
+//
+// Also calls the participants of the first domain at the loopback address, three times: those that ROS 2
+// limits to one machine (ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST) hear no multicast.
 class NetworkTrial
 {
 public:

@@ -51,6 +51,11 @@ constexpr int CallPort(int domain)
 {
     return 7400 + 250 * domain;
 }
+// Returns the port at which the `index`-th participant of a machine takes announcements for itself alone.
+constexpr int AlonePort(int domain, int index)
+{
+    return CallPort(domain) + 10 + 2 * index;
+}
 inline constexpr int LastDomain = 232;
 inline constexpr const char *CallGroup = "239.255.0.1";
 

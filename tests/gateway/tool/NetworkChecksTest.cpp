@@ -64,6 +64,23 @@ TEST_F(NetworkChecks, ProgramsOnOtherInterfacesCannotBeReached)
     EXPECT_EQ(OfOtherInterfaces(config, used, facts, true)[0].How, Level::Note);
 }
 
+TEST_F(NetworkChecks, ProgramsThatTakeNoMulticastAreTold)
+{
+    EXPECT_THAT(OfLoopback(config, used, facts), IsEmpty());
+    facts.OnLoopbackAlone = {"a program of ROS 2 (0102030405060708090a0b0c)"};
+    auto findings = OfLoopback(config, used, facts);
+    ASSERT_THAT(findings, SizeIs(1));
+    EXPECT_EQ(findings[0].How, Level::Note) << "it may belong to something else";
+    EXPECT_EQ(findings[0].Text,
+              "a program of ROS 2 (0102030405060708090a0b0c) is in domain 0 on this machine, "
+              "and takes no multicast: nodes without `peers` do not meet it");
+    EXPECT_THAT(findings[0].Advice, HasSubstr("list 127.0.0.1 in `peers`"));
+    used[0].IsLoopback = true;
+    EXPECT_EQ(OfLoopback(config, used, facts)[0].How, Level::Problem);
+    config.Peers = {"10.0.0.9", "127.0.0.1"};
+    EXPECT_THAT(OfLoopback(config, used, facts), IsEmpty());
+}
+
 TEST_F(NetworkChecks, WhatCannotBeSentIsAProblemWithTheRouteThatLacks)
 {
     Trial() = {};

@@ -83,7 +83,9 @@ public:
         Air,        // Gateway::AirStatus of the node: its members in their order, as decimal numbers
         LastLines,  // the last lines of its log, as many as the argument says
         LinesFrom,  // its log from the line with that number on; the request waits for such a line
-        Echo        // empty, for the round trip; requested once, with another argument each time
+        Echo,       // empty, for the round trip; requested once, with another argument each time
+        Foreign  // its topics of foreign programs, a line each with tabs between: `read` or `written`, state,
+                 // topic, type, local name, QoS, samples, readers, reason
     };
     struct Answer
     {

@@ -6,8 +6,10 @@ Usage: doctor_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 import pathlib
 import re
 import signal
+import socket
 import subprocess
 import sys
+import threading
 
 from two_aircraft import LIMIT, SWARM, Rabit, harness, is_well, keys, main
 
@@ -77,6 +79,42 @@ def a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_ther
     assert done.returncode == 3 and "! interface nosuch0: this machine has none. Do: name one of " in done.stdout, done
 
 
+class LocalProgram:
+    """A DDS program that takes announcements at the loopback address of this machine alone, as ROS 2 has it with
+    ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST: it answers each with its own."""
+
+    IDENTITY = bytes(range(1, 13))
+
+    def __init__(self, domain):
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.bind(("127.0.0.1", 7410 + 250 * domain + 2 * 30))
+        self._thread = threading.Thread(target=self._answer)
+
+    def _answer(self):
+        while True:
+            datagram, sender = self._socket.recvfrom(65536)
+            if not datagram:
+                return
+            self._socket.sendto(datagram.replace(datagram[8:20], self.IDENTITY), sender)
+
+    def __enter__(self):
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_):
+        self._socket.sendto(b"", self._socket.getsockname())
+        self._thread.join()
+        self._socket.close()
+
+
+def a_doctor_tells_of_a_program_that_takes_no_multicast(rabit):
+    with LocalProgram(rabit.domain):
+        findings, done = rabit.objects("doctor", "--wait", "4")
+    (finding,) = [finding for finding in findings if finding["subject"] == "this machine alone"]
+    assert finding["level"] == "problem" and "(0102030405060708090a0b0c) is in domain" in finding["text"], finding
+    assert "127.0.0.1" in finding["advice"] and done.returncode == 1, done
+
+
 def takes_interrupts(process):
     status = pathlib.Path(f"/proc/{process}/status").read_text()
     masks = [int(mask, 16) for mask in re.findall(r"^Sig(?:Blk|Cgt):\s*([0-9a-f]+)", status, re.MULTILINE)]
@@ -96,6 +134,7 @@ def a_doctor_that_is_interrupted_has_no_report(rabit):
 TESTS = [a_doctor_that_is_interrupted_has_no_report, a_doctor_finds_nothing_wrong_with_a_fleet_that_is_well,
          a_doctor_is_answered_by_a_node_that_is_alone_over_each_dds, a_doctor_tells_of_the_domain_that_the_others_are_in,
          a_doctor_that_hears_nobody_listens_until_nodes_of_all_domains_must_have_announced_themselves,
+         a_doctor_tells_of_a_program_that_takes_no_multicast,
          a_doctor_tells_of_two_nodes_of_one_name_and_of_an_interface_that_is_not_there]
 
 

@@ -5,8 +5,9 @@ Usage: listing_test.py RABIT UAV TRANSPORT[,TRANSPORT]... [TEST]..."""
 
 import re
 import subprocess
+import tempfile
 
-from two_aircraft import LIMIT, SWARM, Rabit, harness, is_well, keys, main
+from two_aircraft import LIMIT, SWARM, Rabit, aircraft_config, harness, is_well, keys, main
 
 HASH = re.compile(r"^[0-9a-f]{16}$")
 
@@ -31,6 +32,27 @@ def nodes_are_listed_with_what_they_have(rabit):
     queue = next(item for item in row["accepts"] if item["queue"] == "MissionControl")
     assert keys(queue) == ["queue", "types", "from"] and queue["from"] == ["*"]
     assert "Uav::Goto" in [item["type"] for item in queue["types"]]
+
+
+def foreign_topics_are_listed_with_their_states(rabit):
+    alone = Rabit(rabit.program, rabit.transport, (rabit.domain + 60) % 200)
+    with tempfile.TemporaryDirectory() as folder:
+        config = aircraft_config(folder)
+        config.write_text(config.read_text() + "foreign:\n  - {subscribe: /goals, type: Uav::Goto, as: Goals, names: ros2}\n")
+        with harness.Processes() as processes:
+            processes.start([rabit.uav, "--config", config, "--node", "lab", "--domain", str(alone.domain),
+                             "--transport", alone.transport])
+            for command in ("nodes", "messages"):
+                def told(command=command):
+                    listed, _ = alone.objects(command, "--foreign", "--wait", "10")
+                    return [row for row in listed if "foreign" in row]
+                (row,) = harness.until(told)
+                assert keys(row) == ["foreign", "node", "type", "local", "written", "state", "reason", "qos", "samples",
+                                     "readers"], row
+                assert (row["foreign"], row["node"], row["local"], row["state"]) == ("rt/goals", "lab", "Goals", "LOST"), row
+                assert "no program writes `rt/goals`" in row["reason"], row
+            table = alone.run("nodes", "--foreign", "--wait", "10").stdout
+            assert "FOREIGN TOPIC" in table and "rt/goals" in table, table
 
 
 def nodes_is_a_table_for_people(rabit):
@@ -194,6 +216,7 @@ TESTS = [nodes_are_listed_with_what_they_have, nodes_is_a_table_for_people,
          messages_are_listed_with_their_types_and_who_publishes_and_reads_them,
          how_often_all_messages_come_is_measured_together, the_idl_of_a_type_is_had_by_its_name_and_by_a_messages_name,
          a_name_that_is_wrong_is_answered_with_the_nearest,
+         foreign_topics_are_listed_with_their_states,
          what_a_node_does_not_have_is_told_as_soon_as_its_announcement_is_there,
          another_aircraft_is_not_proposed_for_one_that_is_not_there, a_mistyped_command_or_option_is_answered_with_the_nearest, whoever_asks_again_and_again_is_answered, the_problems_of_the_nodes_are_told_each_time,
          output_that_cannot_be_written_is_told_by_every_command, a_tool_does_not_appear_under_the_name_of_a_node,

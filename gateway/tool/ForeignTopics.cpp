@@ -1,0 +1,108 @@
+#include "ForeignTopics.h"
+
+#include <rabit/base/NaturalOrder.h>
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "Output.h"
+#include "SafeText.h"
+#include "Table.h"
+#include "names/ListedNames.h"
+#include "wire/ForeignReport.h"
+
+namespace Rabit::Tool
+{
+namespace
+{
+
+using ForeignTopicList = std::vector<Gateway::ForeignTopic>;
+using ForeignOfNodes = std::map<std::string, std::optional<ForeignTopicList>, NaturalOrder>;
+
+ForeignOfNodes AskForForeign(FleetSession &session, double seconds)
+{
+    using Report = FleetExplorer::Report;
+    FleetExplorer &explorer = session.Explorer();
+    ForeignOfNodes nodes;
+    for (const FleetSession::Node &node : session.Nodes())
+    {
+        if (node.State != Gateway::NodeState::LOST)
+        {
+            explorer.AskForReport(node.Name, Report::Foreign);
+            nodes.emplace(node.Name, std::nullopt);
+        }
+    }
+    session.WaitUntil(session.Seconds() + seconds,
+                      [&]
+                      {
+                          bool all = true;
+                          for (auto &[name, topics] : nodes)
+                          {
+                              if (!topics)
+                              {
+                                  const auto answer = explorer.TakeReport(name, Report::Foreign);
+                                  topics = answer ? std::optional(ForeignReport::TopicsIn(answer->Text))
+                                                  : std::nullopt;
+                              }
+                              all = all && topics.has_value();
+                          }
+                          return all;
+                      });
+    return nodes;
+}
+
+nlohmann::ordered_json JsonOfForeign(const std::string &node, const Gateway::ForeignTopic &topic)
+{
+    return {{"foreign", topic.topic},   {"node", node},
+            {"type", topic.type},       {"local", topic.local},
+            {"written", topic.written}, {"state", ToString(topic.state)},
+            {"reason", topic.reason},   {"qos", topic.qos},
+            {"samples", topic.samples}, {"readers", topic.readers}};
+}
+
+}  // namespace
+
+bool ShowForeignTopics(FleetSession &session, const CommonOptions &options)
+{
+    const ForeignOfNodes nodes = AskForForeign(session, options.IsWaitGiven ? options.Wait : 2.0);
+    std::vector<std::string> silent;
+    std::vector<std::vector<std::string>> rows{
+        {"FOREIGN TOPIC", "TYPE", "NODE", "LOCAL", "STATE", "SAMPLES", "REASON"}};
+    bool good = true;
+    for (const auto &[name, topics] : nodes)
+    {
+        if (!topics)
+        {
+            silent.push_back(name);
+            continue;
+        }
+        for (const Gateway::ForeignTopic &topic : *topics)
+        {
+            if (options.Json)
+            {
+                good = good && Output::Object(JsonOfForeign(name, topic));
+            }
+            // A topic that this node writes has no state.
+            rows.push_back({SafeText(topic.topic), SafeText(topic.type), SafeText(name),
+                            SafeText(topic.local), topic.written ? "written" : ToString(topic.state),
+                            std::to_string(topic.samples),
+                            topic.reason.empty() ? "-" : SafeText(topic.reason)});
+        }
+    }
+    if (!options.Json && rows.size() > 1)
+    {
+        good = Output::Line("") && Output::Lines(TableLines(rows));
+    }
+    if (!silent.empty())
+    {
+        Output::Talk("no word of foreign topics from " + ListedNames(silent) +
+                     ": ask again, or give a longer --wait");
+    }
+    return good;
+}
+
+}  // namespace Rabit::Tool

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "CommonOptions.h"
+#include "FleetSession.h"
+
+namespace Rabit::Tool
+{
+
+// Asks all live nodes for the topics of foreign programs that they read or write, and shows the topics with
+// their states: a table, or an object for each. Nodes that have not answered within 2 s, or within --wait if
+// it is given, are named on standard error. Returns false if standard output is closed.
+bool ShowForeignTopics(FleetSession &session, const CommonOptions &options);
+
+}  // namespace Rabit::Tool
