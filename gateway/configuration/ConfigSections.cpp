@@ -50,8 +50,13 @@ ConfigSection WholeFileSection()
           "Lets the DDS implementation use shared memory between processes of one machine."},
          {"lease", "time from 200ms; more than 5min count as 5min", "30s", "10s",
           "DDS forgets a participant that is silent for this time. Nodes are LOST long before, by their "
-          "beats. "
-          "Default with a `budget`: 90s."},
+          "beats. Default with a `budget`: 90s."},
+         {"lost_after",
+          "time up to 1h, three beats at least: 1500ms, with a `budget` 3 times `slowest_beat`, with `paths` "
+          "that of the path with the most frequent beats",
+          "", "5s",
+          "Another node is LOST after this time without a beat from it, but not before three of its "
+          "beats are missing. Default: seven times the time between its beats (3.5s)."},
          {"backend_config", "path of a file", "", "vendor.xml",
           "Settings of the DDS implementation in its own format, for what no key here says."},
          {"state_dir", "path of a folder", "", "/var/lib/rabit",
@@ -62,8 +67,7 @@ ConfigSection WholeFileSection()
          {"radio", "mapping", "", "{budget: 5kB/s}", "Limits on what this node puts on the air."},
          {"paths", "list of mappings", "", "[{name: mesh, interfaces: [wlan0]}]",
           "Several networks to the same nodes, the best first. With it `interfaces`, `peers`, `multicast` "
-          "and `radio` "
-          "stand in each path."},
+          "and `radio` stand in each path."},
          {"fetch", "mapping", "", "{folder: /var/lib/rabit/recordings, from: [ground]}",
           "Files that other nodes may fetch with `rabit fetch`. Default: none."},
          {"record", "mapping", "", "{folder: /var/lib/rabit/recordings}",
@@ -86,11 +90,10 @@ ConfigSection WholeFileSection()
           "Nodes whose own problems `Gateway/Fleet` tells in words (`problem_texts`). Default: none; only "
           "the number of their problems is known."},
          {"reports", "`on` or `off`", "on", "off",
-          "`off`: this node sends its problems in words and its log to nobody."},
+          "`off`: this node sends its problems in words, its foreign topics and its log to nobody."},
          {"parameters", "mapping of any keys", "", "{spacing_m: 20, leader: uav1}",
           "Values of the program itself, which reads them by `config.Parameters`. A name that the program "
-          "does "
-          "not read is an error."}}};
+          "does not read is an error."}}};
 }
 
 ConfigSection SecuritySection()

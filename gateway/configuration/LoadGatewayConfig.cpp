@@ -108,6 +108,10 @@ void ReadNetwork(const YamlMap &map, GatewayConfig &config)
              TransportSettings::LargestDatagram);
     map.Read("shared_memory", config.SharedMemory);
     map.Read("lease", config.Lease);
+    if (map.Has("lost_after"))
+    {
+        map.Read("lost_after", config.LostAfter.emplace());
+    }
     map.Read("backend_config", config.BackendConfig);
     map.Read("state_dir", config.StateDir);
 }

@@ -34,6 +34,7 @@ public:
         CheckNetwork();
         CheckRadio(_config.Radio, "");
         CheckPaths();
+        CheckLostAfter();
         CheckRecording(_config, _whyNoType);
         CheckMessages(_config, _whyNoType);
         CheckForeign(_config, _whyNoType);
@@ -136,6 +137,28 @@ private:
         {
             Fail(LineOf(place + "radio.budget"),
                  "the budget is out of range; expected 1000MB/s or less, or auto");
+        }
+    }
+
+    // On the path with the most frequent beats, a node must be able to beat three times within that time.
+    void CheckLostAfter() const
+    {
+        constexpr int beatsOfStale = 3;
+        constexpr std::chrono::milliseconds usualBeat{500};
+        const auto slowest = [usualBeat](const RadioSettings &radio)
+        { return radio.Budget ? std::max(radio.SlowestBeat, usualBeat) : usualBeat; };
+        std::chrono::milliseconds beat = slowest(_config.Radio);
+        for (std::size_t i = 0; i < _config.Paths.size(); ++i)
+        {
+            const std::chrono::milliseconds ofPath = slowest(_config.Paths[i].Radio);
+            beat = i == 0 ? ofPath : std::min(beat, ofPath);
+        }
+        if (_config.LostAfter &&
+            (*_config.LostAfter < beatsOfStale * beat || *_config.LostAfter > std::chrono::hours(1)))
+        {
+            Fail(LineOf("lost_after"),
+                 "`lost_after` is out of range; expected " + std::to_string((beatsOfStale * beat).count()) +
+                     "ms to 3600s, as a node may beat each " + std::to_string(beat.count()) + " ms");
         }
     }
 

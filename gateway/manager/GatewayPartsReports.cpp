@@ -169,7 +169,7 @@ std::optional<std::string> GatewayManager::Parts::ReportOf(NodeReports::Name nam
         case NodeReports::Kind::LinesFrom:
             return _config.Reports ? _log.From(name.Argument) : std::nullopt;
         case NodeReports::Kind::Foreign:
-            return _config.Reports ? ForeignReport::TextOf(_fleet->foreign) : std::string();
+            return _config.Reports ? std::optional(ForeignReport::TextOf(_fleet->foreign)) : std::nullopt;
         case NodeReports::Kind::Echo:
             break;
     }

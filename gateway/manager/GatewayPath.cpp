@@ -53,6 +53,10 @@ void GatewayPath::Open()
     {
         _presence.BeTool([this](const std::string &node) { return MatchesAny(_config.Tool->AsksOf, node); });
     }
+    if (_config.LostAfter)
+    {
+        _presence.SetLostAfter(*_config.LostAfter);
+    }
     if (_config.Replay)
     {
         _presence.BeReplay();

@@ -73,6 +73,7 @@ PeerTable::Peer *PeerTable::GetOrMake(const std::string &node, Change &change)
     }
     Peer &made = _peers[node];
     made.Node = node;
+    made.LostStated = _lostAfter;
     change.NewLife = true;
     return &made;
 }

@@ -32,7 +32,7 @@ public:
     using Duration = std::chrono::nanoseconds;
 
     // A node tells the time to its next beat. It is STALE after StaleAfterBeats times that time without a
-    // beat, LOST after LostAfterBeats times.
+    // beat, LOST after LostAfterBeats times, or when SetLostAfter says.
     static constexpr int StaleAfterBeats = 3;
     static constexpr int LostAfterBeats = 7;
     // The time that a node tells is clamped to this range.
@@ -95,7 +95,11 @@ public:
         // True if Offers has the digest in its beats, so that States refers to it.
         bool HasPresentOffers() const { return Offers && OffersDigest == BeatsOffers; }
         Duration StaleAfter() const { return StaleAfterBeats * Period; }
-        Duration LostAfter() const { return LostAfterBeats * Period; }
+        Duration LostAfter() const
+        {
+            return LostStated > Duration(0) ? std::max(LostStated, StaleAfter()) : LostAfterBeats * Period;
+        }
+        Duration LostStated{0};  // PeerTable::SetLostAfter; 0: it is not stated
 
         // The contents of the next echo to it.
         Duration LastBeatSource{0};
@@ -179,6 +183,9 @@ public:
     std::uint64_t Malformed() const { return _malformed + _missing.Wrong(); }
     // A beat of this node was sent, which carried `source` as its source time.
     void NoteSent(std::int64_t source, Duration now) { _sent.Add(source, now); }
+    // States after how long a node is LOST, in place of LostAfterBeats, but not before it is STALE. Before
+    // the first input.
+    void SetLostAfter(Duration time) { _lostAfter = time; }
     // Sets the time between this node's beats.
     void SetBeatPeriod(Duration period) { _echoPeriod = std::max(EchoPeriod, EchoEachBeats * period); }
     // Number of echoes due: all for peers that doubt this node, and at most `usual` others.
@@ -226,6 +233,7 @@ private:
     std::uint64_t _crowdedOut = 0;
     std::uint64_t _malformed = 0;
     Duration _echoPeriod = EchoPeriod;
+    Duration _lostAfter{0};  // 0: it is not stated
     std::string _lastEchoed;
     std::string _lastReassured;  // of those that doubt this node
     int _ownTwinBeats = 0;

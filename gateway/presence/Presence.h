@@ -56,6 +56,8 @@ public:
     void BeTool(PeerTable::IsAsked asksOf);
     // This node plays a recording. Before Open.
     void BeReplay() { _contents.BeReplay(); }
+    // States after how long other nodes are LOST (PeerTable). Before Open.
+    void SetLostAfter(Duration time) { _peers.SetLostAfter(time); }
     // Starts to send and to receive. Throws TransportError.
     void Open(TransportSession &session, const Gateway::Announcement &announcement);
     // Says goodbye and stops.

@@ -72,7 +72,7 @@ void FullQueues::LookHere(const std::vector<QueueInfo> &queues, const Gateway::F
         const std::vector<std::string> waiting = WaitingFor(info.Name, fleet, delivered);
         const auto known = _here.find(info.Name);
         Queue &queue = full[info.Name];
-        queue = known != _here.end() ? known->second : Queue{delivered, now, info.RefusedAdds, std::nullopt};
+        queue = known != _here.end() ? known->second : Queue{delivered, now, info.RefusedAdds, {}, {}};
         if (TakeIn(queue, delivered, info.RefusedAdds, now) < Patience)
         {
             continue;
@@ -101,10 +101,14 @@ void FullQueues::LookThere(const Gateway::Fleet &fleet, const PeersOverPaths &pe
     {
         const auto known = _there.find({link.node, link.queue});
         Queue &queue = links[{link.node, link.queue}];
-        queue = known != _there.end() ? known->second : Queue{0, now, 0, std::nullopt};
+        queue = known != _there.end() ? known->second : Queue{0, now, 0, {}, {}};
         // Messages that expire meanwhile do not get on.
         const std::uint64_t gotOn = link.delivered + link.undeliverable;
         const Duration still = TakeIn(queue, gotOn, link.refused_full, now);
+        if (link.held_back)
+        {
+            queue.LastHeld = now;
+        }
         if (link.outbox == 0)
         {
             queue.StillSince = now;
@@ -112,14 +116,14 @@ void FullQueues::LookThere(const Gateway::Fleet &fleet, const PeersOverPaths &pe
         }
         const PeerTable::Peer *const peer = peers.Find(link.node);
         const bool isLost = peer == nullptr || peer->State == Gateway::NodeState::LOST;
-        const bool isHeld = !isLost && link.held_back;
+        const bool isHeld = !isLost && IsHeldLately(queue, now);
         const bool refuses = HasRefusedLately(queue, now);
         if ((!refuses && !isHeld) || still < (isLost || isHeld ? Patience : LongSending))
         {
             continue;
         }
         const std::string why = isLost   ? link.node + " is LOST"
-                                : isHeld ? "that queue is full, or not there yet"
+                                : isHeld ? "that queue is full, not there, or without memory for it"
                                          : link.node + " has taken none for more than 10 s";
         problems.push_back(
             {"send " + link.node + "/" + link.queue, link.node,

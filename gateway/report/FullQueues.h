@@ -44,6 +44,7 @@ private:
         Duration StillSince{0};   // none has since then
         std::uint64_t Refused = 0;
         std::optional<Duration> LastRefused;
+        std::optional<Duration> LastHeld;  // of a queue of another node
     };
 
     // Takes in the counters, which only rise. Returns for how long no message has got on.
@@ -51,6 +52,11 @@ private:
     static bool HasRefusedLately(const Queue &queue, Duration now)
     {
         return queue.LastRefused && now - *queue.LastRefused < Memory;
+    }
+    // A queue that has room for a moment is held again at the next message.
+    static bool IsHeldLately(const Queue &queue, Duration now)
+    {
+        return queue.LastHeld && now - *queue.LastHeld < Patience;
     }
     void LookHere(const std::vector<QueueInfo> &queues, const Gateway::Fleet &fleet, Duration now,
                   std::vector<Gateway::Problem> &problems);

@@ -1,40 +1,40 @@
 #include "IdlFiles.h"
 
-#include <rabit/base/WithoutByteOrderMark.h>
+#include <rabit/dynamic/IdlFile.h>
 #include <rabit/gateway/ConfigError.h>
+#include <rabit/idl/NearestWord.h>
 
-#include <fstream>
-#include <sstream>
+#include "names/ListedNames.h"
 
 namespace Rabit::Tool
 {
 
-IdlFiles::IdlFiles(const std::vector<std::string> &files)
+IdlFiles::IdlFiles(const std::vector<std::string> &files) : _files(files)
 {
     for (const std::string &file : files)
     {
-        std::ostringstream text;
-        if (std::ifstream stream(file, std::ios::binary); !stream || !(text << stream.rdbuf()))
+        const IdlFile loaded = IdlFile::Load(file);
+        if (!loaded.Reason.empty())
         {
-            throw ConfigError(file, 0, "cannot be read");
+            throw ConfigError(loaded.Reason);
         }
-        _texts.emplace_back(file, WithoutByteOrderMark(text.str()));
+        _messages.insert(_messages.end(), loaded.Messages.begin(), loaded.Messages.end());
     }
 }
 
 ParsedType IdlFiles::Find(const std::string &type) const
 {
-    ParsedType found;
-    for (const auto &[file, text] : _texts)
+    std::vector<std::string> names;
+    for (const auto &message : _messages)
     {
-        ParsedType parsed = DynamicType::Parse(text, type);
-        if (parsed.Type)
+        if (message->Name() == type)
         {
-            return parsed;
+            return {message, ""};
         }
-        found.Reason += (found.Reason.empty() ? "" : "; ") + file + ": " + parsed.Reason;
+        names.push_back(message->Name());
     }
-    return found;
+    return {nullptr, ListedNames(_files) + (_files.size() == 1 ? " defines" : " define") + " no message `" +
+                         type + "`" + NearestWordHint(type, names)};
 }
 
 }  // namespace Rabit::Tool

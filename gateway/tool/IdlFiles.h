@@ -2,8 +2,8 @@
 
 #include <rabit/dynamic/DynamicType.h>
 
+#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace Rabit::Tool
@@ -13,15 +13,17 @@ namespace Rabit::Tool
 class IdlFiles
 {
 public:
-    // Throws ConfigError if one cannot be read.
+    // Throws ConfigError if one cannot be loaded.
     explicit IdlFiles(const std::vector<std::string> &files);
 
-    bool AreNone() const { return _texts.empty(); }
-    // Returns the type of that name from the first file that has it, or the reason why there is none.
+    bool AreNone() const { return _files.empty(); }
+    // Returns the type of that name from the first file that has it, or the reason why there is none. The
+    // type has the definition of programs that were built with the file.
     ParsedType Find(const std::string &type) const;
 
 private:
-    std::vector<std::pair<std::string, std::string>> _texts;  // by the names of the files
+    std::vector<std::string> _files;
+    std::vector<std::shared_ptr<const DynamicType>> _messages;
 };
 
 }  // namespace Rabit::Tool

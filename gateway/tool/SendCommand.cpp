@@ -320,7 +320,7 @@ int Run(const Options &options, Wakeup &wakeup)
     rule.Expire = std::chrono::milliseconds(static_cast<std::int64_t>(1000.0 * options.Expire));
     config.Send.push_back(rule);
     auto session = std::make_unique<FleetSession>(config, options.Common, wakeup);
-    std::vector<Taker> found = Meet(*session, *to, options.Type);
+    const std::vector<Taker> found = Meet(*session, *to, options.Type);
     if (!session->IsAnybodyThere())
     {
         return session->NobodyThere();
@@ -343,6 +343,7 @@ int Run(const Options &options, Wakeup &wakeup)
                          "`; it gets nothing");
         }
     }
+    bool good = holders.size() == found.size();
     const FleetType type = FetchType(*session, holders, options.Type, found.front().Definition,
                                      session->Seconds() + options.Common.Wait);
     if (!type.Type || DynamicType::Register(type.Type) == nullptr)
@@ -374,11 +375,10 @@ int Run(const Options &options, Wakeup &wakeup)
         config.Accept.push_back({.Queue = Replies::Queue, .Types = {options.Reply}, .From = {to->Node}});
         session = std::make_unique<FleetSession>(config, options.Common, wakeup);
         replies.emplace(*session, config.Node);
-        found = Meet(*session, *to, options.Type);
-        answers.emplace(Answers{*replies, std::max<std::size_t>(found.size(), 1), std::move(expected)});
+        Meet(*session, *to, options.Type);
+        answers.emplace(Answers{*replies, holders.size(), std::move(expected)});
     }
     Sender sender(options, *session, wakeup, type.Type, answers ? &*answers : nullptr);
-    bool good = holders.size() == found.size();
     if (options.Value != "-")
     {
         return sender.Send(options.Value) && good ? Good : ProblemFound;

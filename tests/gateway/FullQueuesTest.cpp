@@ -137,15 +137,37 @@ TEST_F(FullQueuesTest, TheSenderIsToldOfAQueueOfAnotherNodeThatNobodyReads)
     LookAfter(0s);
     now += 3s;
     HearUav();
-    EXPECT_THAT(LookAfter(0s), ElementsAre("uav1: send uav1/Commands: messages wait: that queue is full, or "
-                                           "not there yet"));
+    EXPECT_THAT(LookAfter(0s), ElementsAre("uav1: send uav1/Commands: messages wait: that queue is full, "
+                                           "not there, or without memory for it"));
     fleet.links[0].refused_full = 3;
     ++fleet.links[0].expired;
-    EXPECT_THAT(LookAfter(0s), ElementsAre("uav1: send uav1/Commands: no more messages may wait, and they "
-                                           "are refused: that queue is full, or not there yet"))
+    EXPECT_THAT(LookAfter(0s),
+                ElementsAre("uav1: send uav1/Commands: no more messages may wait, and they "
+                            "are refused: that queue is full, not there, or without memory for it"))
         << "a message that expires does not get on";
     ++fleet.links[0].delivered;
     EXPECT_THAT(LookAfter(0s), IsEmpty());
+}
+
+TEST_F(FullQueuesTest, AQueueThatIsNotHeldBackAtOneLookKeepsItsRow)
+{
+    Gateway::LinkStatus &link = Waiting();
+    const auto rowsAfter = [&](Moment time, bool isHeld)
+    {
+        link.held_back = isHeld;
+        now += time;
+        HearUav();
+        return LookAfter(0s).size();
+    };
+    rowsAfter(0s, true);
+    EXPECT_EQ(rowsAfter(3s, true), 1u);
+    EXPECT_EQ(rowsAfter(1s, false), 1u);
+    EXPECT_EQ(rowsAfter(1s, true), 1u);
+    EXPECT_EQ(rowsAfter(3s - 1ns, false), 1u);
+    EXPECT_EQ(rowsAfter(1ns, false), 0u);
+    EXPECT_EQ(rowsAfter(1s, true), 1u);
+    ++link.delivered;
+    EXPECT_EQ(rowsAfter(1s, false), 0u) << "a message got on";
 }
 
 TEST_F(FullQueuesTest, EachQueueOfAnotherNodeHasARowOfItsOwn)
@@ -156,10 +178,10 @@ TEST_F(FullQueuesTest, EachQueueOfAnotherNodeHasARowOfItsOwn)
     LookAfter(0s);
     now += 3s;
     HearUav();
-    EXPECT_THAT(LookAfter(0s), ElementsAre("uav1: send uav1/Commands: messages wait: that queue is full, or "
-                                           "not there yet",
-                                           "uav1: send uav1/Areas: messages wait: that queue is full, or "
-                                           "not there yet"))
+    EXPECT_THAT(LookAfter(0s), ElementsAre("uav1: send uav1/Commands: messages wait: that queue is full, "
+                                           "not there, or without memory for it",
+                                           "uav1: send uav1/Areas: messages wait: that queue is full, "
+                                           "not there, or without memory for it"))
         << "messages for Notes are only on their way";
 }
 

@@ -178,6 +178,7 @@ multicast: off
 max_datagram: 65000
 shared_memory: on
 lease: 2s
+lost_after: 90s
 backend_config: vendor.xml
 state_dir: /var/lib/rabit
 radio:
@@ -203,6 +204,7 @@ send:
     EXPECT_EQ(config.MaxDatagram, 65000u);
     EXPECT_TRUE(config.SharedMemory);
     EXPECT_EQ(config.Lease, 2s);
+    EXPECT_EQ(config.LostAfter, 90s);
     EXPECT_EQ(config.BackendConfig, "vendor.xml");
     EXPECT_EQ(config.StateDir, "/var/lib/rabit");
     EXPECT_EQ(config.Radio.Budget, 1500.0);
@@ -388,6 +390,15 @@ TEST_F(GatewayConfigTest, ParametersAreAMapping)
     EXPECT_NO_THROW(Load("node: uav1\n").Parameters.RefuseOthers());
 }
 
+TEST_F(GatewayConfigTest, TheBestPathTellsHowSoonANodeMayBeLost)
+{
+    const std::string paths =
+        "paths:\n  - {name: mesh, interfaces: [wlan0]}\n  - {name: modem, interfaces: [ppp0], radio: "
+        "{budget: 2kB/s}}\n";
+    EXPECT_EQ(Load("node: a\nlost_after: 1500ms\n" + paths).LostAfter, 1500ms);
+    EXPECT_FALSE(Load("node: a\n" + paths).LostAfter);
+}
+
 TEST_F(GatewayConfigTest, ABudgetIsInBytesASecondOrAuto)
 {
     EXPECT_EQ(Load("node: a\nradio: {budget: 1500B/s}\n").Radio.Budget, 1500.0);
@@ -548,6 +559,12 @@ const BadConfig BadConfigs[] = {
      "node.yaml:2: `lease` is `-1s`; expected a time such as 5s, 200ms or 2min"},
     {"LeaseTooShort", "node: a\nlease: 1ms\n",
      "node.yaml:2: the lease is out of range; expected 200ms to 3600s"},
+    {"LostBeforeThreeBeats", "node: a\nlost_after: 1s\n",
+     "node.yaml:2: `lost_after` is out of range; expected 1500ms to 3600s, as a node may beat each 500 ms"},
+    {"LostBeforeThreeRareBeats", "node: a\nlost_after: 5s\nradio: {budget: 5kB/s}\n",
+     "node.yaml:2: `lost_after` is out of range; expected 6000ms to 3600s, as a node may beat each 2000 ms"},
+    {"LostMuchTooLate", "node: a\nlost_after: 61min\n",
+     "node.yaml:2: `lost_after` is out of range; expected 1500ms to 3600s, as a node may beat each 500 ms"},
     {"ZeroCapacity", "node: a\nsend:\n  - {capacity: 0}\n",
      "node.yaml:3: `capacity` is `0`; expected a whole number from 1 to 1000000"},
     {"BadSwitch", "node: a\nmulticast: maybe\n",

@@ -42,6 +42,25 @@ TEST_F(MirrorTest, APostAppearsAtTheOtherNodeUnderTheOriginsName)
     EXPECT_TRUE(*mirrored == *pose);
 }
 
+TEST_F(MirrorTest, ANodeIsLostAfterTheTimeThatTheConfigurationStates)
+{
+    fleet.Add(AircraftConfig("uav1"));
+    GatewayConfig config = GroundConfig();
+    config.LostAfter = 10s;
+    SimulatedNode &patient = fleet.Add(config);
+    config.Node = "ground2";
+    config.LostAfter = 1500ms;
+    SimulatedNode &quick = fleet.Add(config);
+    Settle();
+    SimulatedFaults cut;
+    cut.Cut = true;
+    fleet.Network.SetFaults("uav1", "*", cut);
+    EXPECT_TRUE(fleet.RunUntil([&] { return quick.StateOf("uav1") == "LOST"; }, 3s));
+    fleet.RunFor(6s);
+    EXPECT_EQ(patient.StateOf("uav1"), "STALE");
+    EXPECT_TRUE(fleet.RunUntil([&] { return patient.StateOf("uav1") == "LOST"; }, 3s));
+}
+
 TEST_F(MirrorTest, AManagerIsWokenByAMirroredMessageAsByALocalOne)
 {
     SimulatedNode &uav = fleet.Add(AircraftConfig("uav1"));

@@ -231,6 +231,7 @@ TEST_F(NodeReportsTest, ANodeWhoseReportsAreOffTellsItsFiguresAndNoWords)
     EXPECT_THAT(RowOfUav(ground).problem_texts, IsEmpty());
     EXPECT_FALSE(Ask(explorer, Report::LastLines, 20).has_value());
     EXPECT_FALSE(Ask(explorer, Report::LinesFrom, 0).has_value());
+    EXPECT_FALSE(Ask(explorer, Report::Foreign).has_value());
     EXPECT_TRUE(Ask(explorer, Report::Air).has_value());
     EXPECT_TRUE(Ask(explorer, Report::Echo, 1).has_value());
 }

@@ -81,6 +81,31 @@ TEST_F(PeerTableTest, SilenceMakesANodeStaleAndThenLost)
     EXPECT_EQ(table.Find("uav1")->Reason, "no beat within its limit of 3.5 s");
 }
 
+TEST_F(PeerTableTest, ANodeIsLostAfterTheStatedTime)
+{
+    table.SetLostAfter(2s);
+    Hear("uav1", 5, 1s);
+    EXPECT_TRUE(table.Advance(2501ms).State);
+    EXPECT_EQ(StateOf("uav1"), NodeState::STALE);
+    EXPECT_FALSE(table.Advance(3s).State);
+    ASSERT_TRUE(table.NextChange().has_value());
+    EXPECT_TRUE(table.Advance(*table.NextChange()).State);
+    EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
+    EXPECT_EQ(table.Find("uav1")->Reason, "no beat within its limit of 2 s");
+}
+
+TEST_F(PeerTableTest, ANodeWithRareBeatsIsNotLostBeforeThreeOfThemAreMissing)
+{
+    table.SetLostAfter(2s);
+    HeardBeat rare = BeatOf("uav1", 5, 1s);
+    rare.Beat.next_ms = 2000;
+    table.OnBeat(rare);
+    table.Advance(7s);
+    EXPECT_EQ(StateOf("uav1"), NodeState::UP);
+    table.Advance(7001ms);
+    EXPECT_EQ(StateOf("uav1"), NodeState::LOST);
+}
+
 TEST_F(PeerTableTest, SaysWhenItNextChanges)
 {
     EXPECT_FALSE(table.NextChange().has_value());

@@ -57,6 +57,7 @@ MAY = {
     "tests/transport/interop/suspension_test.py": FAULT,
     "tests/foreign/ring_test.py": QUIET,
     "tests/transport/faults/vendor_faults_test.py": QUIET,
+    "tests/transport/interop/forged_traffic_test.py": QUIET,
     "tests/gateway/python/test_library.py": MEASURES,
     "tests/opponent/strangers_test.py": MEASURES,
     "tests/simulation/common/SeedRunner.cpp": MEASURES,

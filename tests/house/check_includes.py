@@ -109,7 +109,7 @@ ALLOWED = {
        | {"links" if below == "links" else f"room {below}" for below in rooms} for room, rooms in ROOMS.items()},
     # Only files: no network, no messages.
     "gateway/recording/mcap": {"room mcap", "zstd", "zlib"},
-    "gateway/recording/merge": {"room mcap", "room merge"},
+    "gateway/recording/merge": {"room names", "room mcap", "room merge"},
     # The order of a replay: only files and names.
     "gateway/recording/replay": {"room names", "room mcap", "room replay"},
     # Runs managers again: files, messages and core, no network.

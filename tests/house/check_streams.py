@@ -24,7 +24,6 @@ MAY = {
     "gateway/configuration/LoadGatewayConfig.cpp": TEXT,
     "gateway/python/src/NodeModule.cpp": TEXT,
     "gateway/tool/CheckedFiles.cpp": TEXT,
-    "gateway/tool/IdlFiles.cpp": TEXT,
     "gateway/tool/doctor/MachineFacts.cpp": TEXT,
     "idl/dynamic/IdlIncludes.cpp": TEXT,
     "idl/ros/MsgReader.cpp": TEXT,

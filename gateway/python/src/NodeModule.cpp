@@ -51,6 +51,7 @@ GatewayConfig ReadConfig(const std::string &file, const std::string &node, const
     replace("max_datagram", &GatewayConfig::MaxDatagram);
     replace("shared_memory", &GatewayConfig::SharedMemory);
     replace("lease", &GatewayConfig::Lease);
+    replace("lost_after", &GatewayConfig::LostAfter);
     replace("backend_config", &GatewayConfig::BackendConfig);
     replace("security", &GatewayConfig::Security);
     replace("radio", &GatewayConfig::Radio);

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "names/SchemaText.h"
 #include "recording/mcap/RecordedChannel.h"
 
 namespace Rabit::Merge
@@ -75,10 +76,12 @@ std::optional<std::uint16_t> MergedChannels::TimeLineOf(std::size_t life)
 std::uint16_t MergedChannels::SchemaOf(const std::string &name, const std::string &encoding,
                                        const std::string &text)
 {
-    const auto [known, isNew] = _schemas.try_emplace({name, encoding, text});
+    // One definition has one text, whichever version of Rabit recorded it.
+    const std::string written = encoding == "omgidl" ? SchemaText(text) : text;
+    const auto [known, isNew] = _schemas.try_emplace({name, encoding, written});
     if (isNew)
     {
-        known->second = _writer.AddSchema(name, encoding, text);
+        known->second = _writer.AddSchema(name, encoding, written);
     }
     return known->second;
 }

@@ -7,6 +7,7 @@
 
 #include "names/ListedNames.h"
 #include "names/NamePattern.h"
+#include "names/SchemaText.h"
 #include "recording/mcap/RecordedChannel.h"
 #include "recording/replay/RecordingLacks.h"
 
@@ -104,7 +105,8 @@ std::optional<Candidate> CandidateOf(const Mcap::Contents &contents, const Mcap:
     Candidate candidate;
     candidate.Channel = channel.Id;
     candidate.Stream.Type = schema.Name;
-    candidate.Stream.IdlText = schema.Data;
+    // Older recordings have names such as `_String` escaped.
+    candidate.Stream.IdlText = SchemaText(schema.Data);
     const auto counted = contents.Statistics.ChannelMessageCounts.find(channel.Id);
     candidate.Messages = counted == contents.Statistics.ChannelMessageCounts.end() ? 0 : counted->second;
     return Fill(channel, recorder, candidate) ? std::optional(std::move(candidate)) : std::nullopt;

@@ -192,8 +192,8 @@ std::vector<Finding> OfLoopback(const GatewayConfig &config, const std::vector<I
     {
         return {};
     }
-    const bool isMeant =
-        std::all_of(used.begin(), used.end(), [](const Interface &one) { return one.IsLoopback; });
+    const bool isMeant = !used.empty() && std::all_of(used.begin(), used.end(),
+                                                      [](const Interface &one) { return one.IsLoopback; });
     const bool isOne = alone.size() == 1;
     return {{isMeant ? Level::Problem : Level::Note, "this machine alone",
              Listed(alone) + (isOne ? " is" : " are") + " in domain " + std::to_string(config.Domain) +

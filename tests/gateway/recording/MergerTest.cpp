@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <set>
 
 #include "SyntheticFleet.h"
@@ -199,6 +200,9 @@ TEST(Merger, GivesEachLifeChannelsOfItsOwn)
     ASSERT_EQ(spans.size(), 2U);
     EXPECT_LT(spans["1"].second, spans["2"].first);
     EXPECT_EQ(merged.Recording("uav1", "2").at("incarnation"), "2");
+    const auto isPose = [](const auto &schema) { return schema.second.Name == "Test::Pose"; };
+    EXPECT_EQ(std::count_if(merged.Contents.Schemas.begin(), merged.Contents.Schemas.end(), isPose), 1)
+        << "the lives wrote one definition in two ways";
 }
 
 TEST(Merger, StatesTheBoundOfTheError)

@@ -26,10 +26,11 @@ public:
 
     void AddMetadata(const std::string &name, const TextMap &values) { _writer.AddMetadata({name, values}); }
     std::uint16_t Channel(const std::string &topic, const TextMap &metadata,
-                          const std::string &type = "Uav::Pose", const std::string &encoding = "cdr")
+                          const std::string &type = "Uav::Pose", const std::string &encoding = "cdr",
+                          const std::string &text = "text")
     {
         const std::uint16_t schema =
-            _writer.AddSchema(type, encoding == "cdr" ? "omgidl" : "jsonschema", "text");
+            _writer.AddSchema(type, encoding == "cdr" ? "omgidl" : "jsonschema", text);
         return *_writer.AddChannel(schema, topic, encoding, metadata);
     }
     std::uint16_t Posted(const std::string &node, const std::string &message, const std::string &qos = "")

@@ -70,6 +70,20 @@ TEST_F(ReplayPlanTest, WhatANodePublishedAndWhatItHadFromOthersIsPlayed)
     EXPECT_EQ(plan.Streams.at(0).IdlText, "text");
 }
 
+TEST_F(ReplayPlanTest, RecordingsBeforeAndAfterNamesLostTheirUnderscoreAreOneStream)
+{
+    for (const std::string text : {"struct _String { long x; };", "struct String { long x; };"})
+    {
+        AddFile("uav1").Channel("uav1/Name", {{"rabit.kind", "posted"}, {"rabit.node", "uav1"}}, "String",
+                                "cdr", text);
+    }
+    const ReplayPlan plan = Plan();
+    ASSERT_EQ(plan.Streams.size(), 1U);
+    EXPECT_EQ(plan.Streams[0].IdlText, "struct String { long x; };");
+    EXPECT_EQ(plan.Channels[0].size(), 1U);
+    EXPECT_EQ(plan.Channels[1].size(), 1U);
+}
+
 TEST_F(ReplayPlanTest, PostsThatCameLaterArePlayedWithThoseThatCameLive)
 {
     PlayedFile &file = AddFile("ground");

@@ -233,7 +233,9 @@ void SyntheticFleet::Record(std::size_t node, Time at, const std::string &topic,
                 isJson ? recorder.Writer->AddSchema("rabit.Clocks", "jsonschema", "{}")
                        : recorder.Writer->AddSchema(
                              "Test::Pose", "omgidl",
-                             "module Test {\n@final\nstruct Pose {\n    long long posted;\n};\n};\n");
+                             // As Rabit wrote it before, and as it does.
+                             std::string("module Test {\n@final\nstruct Pose {\n    long long ") +
+                                 (recorder.Is.Incarnation % 2 == 0 ? "_Port" : "Port") + ";\n};\n};\n");
             channel->second = *recorder.Writer->AddChannel(schema, to, isJson ? "json" : "cdr",
                                                            {{"rabit.kind", as}, {"rabit.node", of}});
         }

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rabit/gateway/ConfigError.h>
 #include <unistd.h>
 
 #include <filesystem>
@@ -15,6 +16,7 @@ namespace
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
+using ::testing::StartsWith;
 
 class CheckedFilesTest : public ::testing::Test
 {
@@ -95,7 +97,31 @@ TEST_F(CheckedFilesTest, TypesAreLookedUpWhereAFileHasThem)
                 SizeIs(1));
     Load({Write("b.yaml", "node: b\npublish:\n  - {message: M, type: My::Poze}\n"), {}}, {idl});
     ASSERT_THAT(_findings, SizeIs(1));
-    EXPECT_EQ(_findings[0].Text, idl + ": the text defines no message 'My::Poze'; did you mean `My::Pose`?");
+    EXPECT_EQ(_findings[0].Text, "`" + idl + "` defines no message `My::Poze`; did you mean `My::Pose`?");
+}
+
+TEST_F(CheckedFilesTest, ATypeOfAFileHasTheDefinitionThatProgramsAreBuiltWith)
+{
+    const std::string idl = Write("my.idl",
+                                  "// Positions.\nmodule My {\n@final struct Other { long b; };\n"
+                                  "@final struct Pose { long a; };  // where\n};\n");
+    const ParsedType pose = IdlFiles({idl}).Find("My::Pose");
+    ASSERT_TRUE(pose.Type) << pose.Reason;
+    EXPECT_EQ(pose.Type->IdlText(), "module My {\n@final\nstruct Pose {\n    long a;\n};\n};\n");
+}
+
+TEST_F(CheckedFilesTest, AFileThatIsNoIdlIsNamedWithItsLine)
+{
+    const std::string idl = Write("my.idl", "module My {\nstruct Pose { long };\n};\n");
+    try
+    {
+        const IdlFiles types({idl});
+        FAIL() << "it was loaded";
+    }
+    catch (const ConfigError &error)
+    {
+        EXPECT_THAT(error.what(), StartsWith(idl + ":2: "));
+    }
 }
 
 TEST_F(CheckedFilesTest, AFileWithoutANodeNeedsOne)

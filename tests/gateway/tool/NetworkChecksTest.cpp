@@ -77,6 +77,8 @@ TEST_F(NetworkChecks, ProgramsThatTakeNoMulticastAreTold)
     EXPECT_THAT(findings[0].Advice, HasSubstr("list 127.0.0.1 in `peers`"));
     used[0].IsLoopback = true;
     EXPECT_EQ(OfLoopback(config, used, facts)[0].How, Level::Problem);
+    used.clear();
+    EXPECT_EQ(OfLoopback(config, used, facts)[0].How, Level::Note);
     config.Peers = {"10.0.0.9", "127.0.0.1"};
     EXPECT_THAT(OfLoopback(config, used, facts), IsEmpty());
 }

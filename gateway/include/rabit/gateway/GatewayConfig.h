@@ -205,6 +205,10 @@ struct GatewayConfig
     std::size_t MaxDatagram = 1400;
     bool SharedMemory = false;
     std::chrono::milliseconds Lease{30000};
+    // After how long without a beat another node is LOST, on each path. Three times the time between beats to
+    // 1 h. If a node announces rarer beats, three of these: it is STALE first. Unset: seven times the time
+    // between the node's beats.
+    std::optional<std::chrono::milliseconds> LostAfter{};
     std::string BackendConfig;
 
     // Set: with keys. Not set: every program that reaches the network takes part.

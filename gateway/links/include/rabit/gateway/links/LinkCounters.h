@@ -29,8 +29,8 @@ struct LinkSenderCounters
     double Fill = 0.0;               // of what LinkOptions lets wait, messages or bytes, the fuller; 1: full
     std::size_t Unacknowledged = 0;  // of them, sent at least once, as a whole or in part
     std::size_t UnacknowledgedParts = 0;
-    bool HeldBack = false;  // the receiver has the first of them, or no memory for it: its queue is full, or
-                            // not there yet
+    bool HeldBack = false;  // the first of them waits: the receiver's queue is full, not there, or without
+                            // memory for it
     LinkTime RoundTrip{0};  // of the path to the node, smoothed (RFC 6298 SRTT); 0: not measured yet
 };
 
@@ -52,7 +52,7 @@ struct LinkReceiverCounters
     std::uint64_t SessionsOpened = 0;
     std::uint64_t AcksSent = 0;
     // Present state.
-    bool HeldBack = false;          // a message waits: the queue is full, or there is no memory for it
+    bool HeldBack = false;          // a message waits: the queue is full, or without memory for it
     std::size_t KeptBytes = 0;      // of parts that wait
     std::size_t AssemblyBytes = 0;  // of a large message that is coming in
 };
