@@ -15,7 +15,10 @@ namespace
 std::unique_ptr<TransportWriter> MakeWriter(const ForeignRule &rule, const MessageType &type,
                                             TransportSession &session)
 {
-    TopicDescription topic{.Name = WireTopicOf(rule), .TypeName = WireTypeOf(rule), .KeyOf = {}};
+    TopicDescription topic{.Name = WireTopicOf(rule),
+                           .TypeName = WireTypeOf(rule),
+                           .KeyOf = {},
+                           .TypeHash = WireHashOf(rule, type)};
     if (type.HasKey())
     {
         topic.KeyOf = [&type](SampleBytes bytes, KeyHash &key) { return type.KeyHashOf(bytes, key); };

@@ -93,7 +93,8 @@ void ForeignReader::Open(TransportSession &session, Duration now)
 
 void ForeignReader::MakeReader(const TopicQos &qos)
 {
-    TopicDescription topic{.Name = _status.topic, .TypeName = _status.type, .KeyOf = {}};
+    TopicDescription topic{
+        .Name = _status.topic, .TypeName = _status.type, .KeyOf = {}, .TypeHash = WireHashOf(_rule, _type)};
     if (_type.HasKey())
     {
         topic.KeyOf = [this](SampleBytes bytes, KeyHash &key) { return _type.KeyHashOf(bytes, key); };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/gateway/ForeignRule.h>
+#include <rabit/idl/MessageType.h>
 
 #include <string>
 
@@ -17,6 +18,12 @@ inline std::string WireTopicOf(const ForeignRule &rule)
 inline std::string WireTypeOf(const ForeignRule &rule)
 {
     return rule.Names == ForeignRule::WireNames::Ros2 ? RosTypeName(rule.Type) : rule.Type;
+}
+
+// The hash of the type that this node announces for the topic; empty: none.
+inline std::string WireHashOf(const ForeignRule &rule, const MessageType &type)
+{
+    return rule.Names == ForeignRule::WireNames::Ros2 ? type.RosTypeHash() : "";
 }
 
 }  // namespace Rabit

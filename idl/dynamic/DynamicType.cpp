@@ -205,6 +205,11 @@ const MessageType *DynamicType::Register(const std::shared_ptr<const DynamicType
     return registered->IdlText() == type->IdlText() ? registered : nullptr;
 }
 
+const std::string &DynamicType::RosTypeHash() const
+{
+    return _shapes->RosTypeHash;
+}
+
 DynamicType::DynamicType(std::string name, std::string idlText, std::unique_ptr<const Dynamic::Shapes> shapes)
     : _name(std::move(name)), _idlText(std::move(idlText)), _shapes(std::move(shapes))
 {

@@ -4,6 +4,7 @@
 
 #include "dynamic/Limits.h"
 #include "model/Names.h"
+#include "model/RosTypeHash.h"
 
 #include <algorithm>
 #include <bit>
@@ -200,6 +201,7 @@ std::unique_ptr<const Shapes> ShapeBuilder::Build(const std::string &name)
                 throw Refused("'" + name + "' is @nested: no message");
             }
             _shapes->Root = _known.at(structure);
+            _shapes->RosTypeHash = RabitIdl::RosTypeHash(*structure);
         }
     }
     if (_shapes->Root == nullptr)

@@ -7,6 +7,7 @@
 #include "UnionEmitter.h"
 #include "model/IdlTextEmitter.h"
 #include "model/Names.h"
+#include "model/RosTypeHash.h"
 #include "model/TextBuilder.h"
 
 namespace RabitIdl
@@ -66,9 +67,10 @@ void EmitMessageFunctions(TextBuilder &out, const Model &model, const StructDefi
     out.Line("const ::Rabit::MessageType &" + method + "IdlType()");
     out.Open();
     out.Line("// Never destroyed: threads may still use it when static objects are.");
+    const std::string hash = RosTypeHash(definition);
     out.Line("static const auto &type = *new ::Rabit::Idl::GeneratedMessageType<" + name + ">(\"" +
              ScopedName(definition.Scope, definition.Name) + "\", R\"idl(" + EmitIdlText(model, definition) +
-             ")idl\");");
+             ")idl\"" + (hash.empty() ? "" : ", \"" + hash + "\"") + ");");
     out.Line("return type;");
     out.Close();
     out.Line();

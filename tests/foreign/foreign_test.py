@@ -46,6 +46,8 @@ TOPICS = ["write:rt/chatter:string:reliable:volatile",
           "write:rt/loud:string:best_effort:volatile",
           "write:rt/other:setpoint:reliable:volatile",
           "write:rt/fmu/out/vehicle_status_v1:string:best_effort:transient_local"]
+# Of std_msgs/msg/String, as `ros2 topic info -v` shows it.
+HASH_OF_STRING = "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18"
 # The node's reasons for the topics that do not come.
 REASONS = ["foreign rt/loud LOST a program that writes `rt/loud` is best effort, this node asks for reliable",
            "foreign rt/other LOST a program writes `rt/other` as `px4_msgs::msg::dds_::TrajectorySetpoint_`, this node "
@@ -119,7 +121,7 @@ class Row:
         plain = self.start_plain()
         self.all_flow(node, plain, 0.0)
         if "cyclone" in pathlib.Path(self.plain).name:  # the other program does not show it
-            self.wait(plain, "announced rt/words rabit=1;")
+            self.wait(plain, f"announced rt/words rabit=1;typehash={HASH_OF_STRING};")
         for reason in REASONS:
             self.wait(node, re.escape(reason.format(domain=self.domain)))
 

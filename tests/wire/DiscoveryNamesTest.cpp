@@ -28,6 +28,8 @@ TEST(DiscoveryNames, ParticipantsHaveTheRecordedUserData)
 TEST(DiscoveryNames, EndpointsHaveTheRecordedUserData)
 {
     EXPECT_EQ(EndpointUserData, "rabit=1;");
+    EXPECT_EQ(MakeEndpointUserData(""), "rabit=1;");
+    EXPECT_EQ(MakeEndpointUserData("RIHS01_12"), "rabit=1;typehash=RIHS01_12;");
     EXPECT_EQ(ParseUserData(BytesIn(std::string(EndpointUserData))), std::nullopt)
         << "it is no participant's";
 }

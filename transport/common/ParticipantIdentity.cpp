@@ -14,6 +14,12 @@ constexpr std::string_view Card = ";card=2;";
 
 }  // namespace
 
+std::string MakeEndpointUserData(std::string_view typeHash)
+{
+    std::string text(EndpointUserData);
+    return typeHash.empty() ? text : text.append("typehash=").append(typeHash).append(";");
+}
+
 std::string MakeUserData(std::uint64_t incarnation, bool hasCard)
 {
     return std::string(Prefix) + std::to_string(incarnation) + std::string(hasCard ? Card : ";");

@@ -15,8 +15,10 @@ namespace Rabit
 {
 
 // The USER_DATA of each writer and reader of a node. ROS 2 warns of each endpoint that has none, since it
-// looks for the hash of the type there (REP-2011). It accepts any list of `key=value;`.
+// looks for the hash of the type there (REP-2011). It accepts any list of `key=value;`. Without a hash it is
+// EndpointUserData.
 inline constexpr std::string_view EndpointUserData = "rabit=1;";
+std::string MakeEndpointUserData(std::string_view typeHash);
 
 struct ParticipantIdentity
 {

@@ -98,16 +98,6 @@ void SessionLog::MalformedDatagram() noexcept
           [] { return std::string("a datagram that is no sound RTPS message was dropped"); });
 }
 
-void SessionLog::Impostor(const std::string &node) noexcept
-{
-    Count(_impostors,
-          [&]
-          {
-              return "somebody calls itself " + node + " and has not the keys of " + node +
-                     ": it is taken for a program that is no node";
-          });
-}
-
 TransportCounters SessionLog::Read() const
 {
     TransportCounters counters;

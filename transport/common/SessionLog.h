@@ -30,8 +30,6 @@ public:
                           const std::string &node) noexcept;
     void MalformedSample(const std::string &topic, const char *why) noexcept;
     void MalformedDatagram() noexcept;
-    // A participant calls itself `node` and has the certificate of another node, or none.
-    void Impostor(const std::string &node) noexcept;
     void SamplesLost(std::uint64_t count) noexcept { _samplesLost += count; }
 
     // Count datagrams given to sockets; `bytes` are those of all these datagrams, without IP and UDP headers.
@@ -81,7 +79,6 @@ private:
     std::atomic<std::uint64_t> _inconsistentTypes{0};
     std::atomic<std::uint64_t> _malformedSamples{0};
     std::atomic<std::uint64_t> _malformedDatagrams{0};
-    std::atomic<std::uint64_t> _impostors{0};
     Sent _discovery;
     Sent _samples;
 };

@@ -58,6 +58,36 @@ TEST(DynamicMessage, KeepsItsRegistrationWhenItIsAssignedAndItsCloneIsUnregister
     EXPECT_EQ(target.Clone()->GetGlobalPublishSubscribeMessageRef(), nullptr);
 }
 
+TEST(DynamicType, OfRosHasItsHash)
+{
+    const auto hashOf = [](const std::string &text, const char *name)
+    {
+        const ParsedType parsed = DynamicType::Parse(text, name);
+        return parsed.Type ? parsed.Type->RosTypeHash() : parsed.Reason;
+    };
+    const std::string time =
+        "module builtin_interfaces { module msg {\n"
+        "struct Time { long sec; unsigned long nanosec; };\n}; };\n";
+    EXPECT_EQ(hashOf("module std_msgs { module msg { struct _String { string data; }; }; };",
+                     "std_msgs::msg::String"),
+              "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
+    EXPECT_EQ(hashOf(time + "module std_msgs { module msg {\nstruct Header { builtin_interfaces::msg::Time "
+                            "stamp; string frame_id; };\n}; };",
+                     "std_msgs::msg::Header"),
+              "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01");
+    EXPECT_EQ(hashOf(Text, "Late::Report"), "") << "no module msg";
+    for (const char *member :
+         {"Mode m;", "long grid[2][3];", "sequence<sequence<long> > rows;", "Other o;"})
+    {
+        EXPECT_EQ(hashOf("module Late { struct Other { long x; }; };\nmodule p { module msg {\n"
+                         "enum Mode { ON, OFF };\ntypedef Late::Other Other;\nstruct S { " +
+                             std::string(member) + " };\n}; };",
+                         "p::msg::S"),
+                  "")
+            << member;
+    }
+}
+
 TEST(DynamicType, TellsTheSizeThatAllItsSamplesHave)
 {
     const auto sizeOf = [](const char *members)

@@ -38,6 +38,30 @@ TEST(RosMessages, HaveTheirNamesInTheRegistry)
     }
 }
 
+// Hashes of ROS 2 Jazzy.
+TEST(RosMessages, HaveTheHashesOfRos)
+{
+    const auto hashOf = [](const char *name)
+    {
+        const Rabit::MessageType *type = Rabit::MessageTypeRegistry::Find(name);
+        return type == nullptr ? "there is no such type" : type->RosTypeHash();
+    };
+    EXPECT_EQ(hashOf("std_msgs::msg::String"),
+              "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
+    EXPECT_EQ(hashOf("std_msgs::msg::Empty"),
+              "RIHS01_20b625256f32d5dbc0d04fee44f43c41e51c70d3502f84b4a08e7a9c26a96312");
+    EXPECT_EQ(hashOf("std_msgs::msg::Header"),
+              "RIHS01_f49fb3ae2cf070f793645ff749683ac6b06203e41c891e17701b1cb597ce6a01");
+    EXPECT_EQ(hashOf("nav_msgs::msg::Odometry"),
+              "RIHS01_3cc97dc7fb7502f8714462c526d369e35b603cfc34d946e3f2eda2766dfec6e0");
+}
+
+TEST(RosMessages, HaveTheHashOfBoundsArraysAndPartsOfOtherPackages)
+{
+    EXPECT_EQ(shapes::msg::Bounded::IdlType().RosTypeHash(),
+              "RIHS01_1fcd0973bff70910c653811e03283fd33f097838d02cf4dcbd2a42f25d7df0f9");
+}
+
 TEST(RosMessages, HaveConstantsInAModuleOfTheirOwn)
 {
     static_assert(px4_msgs::msg::VehicleOdometry_Constants::POSE_FRAME_FRD == 2);

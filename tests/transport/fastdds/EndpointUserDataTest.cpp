@@ -18,8 +18,16 @@ std::string UserDataOf(const EndpointQos &qos)
 
 TEST(EndpointUserData, IsInTheAnnouncementOfEachWriterAndReader)
 {
-    EXPECT_EQ(UserDataOf(Rabit::FastDds::MakeWriterQos({}, {})), Rabit::EndpointUserData);
-    EXPECT_EQ(UserDataOf(Rabit::FastDds::MakeReaderQos({}, {})), Rabit::EndpointUserData);
+    EXPECT_EQ(UserDataOf(Rabit::FastDds::MakeWriterQos({}, {}, {})), Rabit::EndpointUserData);
+    EXPECT_EQ(UserDataOf(Rabit::FastDds::MakeReaderQos({}, {}, {})), Rabit::EndpointUserData);
+}
+
+TEST(EndpointUserData, HasTheHashOfTheType)
+{
+    const Rabit::TopicDescription topic{
+        .Name = "rt/words", .TypeName = "std_msgs::msg::dds_::String_", .KeyOf = {}, .TypeHash = "RIHS01_12"};
+    EXPECT_EQ(UserDataOf(Rabit::FastDds::MakeWriterQos(topic, {}, {})), "rabit=1;typehash=RIHS01_12;");
+    EXPECT_EQ(UserDataOf(Rabit::FastDds::MakeReaderQos(topic, {}, {})), "rabit=1;typehash=RIHS01_12;");
 }
 
 }  // namespace

@@ -37,10 +37,10 @@ CycloneReader::CycloneReader(std::shared_ptr<SessionCore> core, const TopicDescr
                              static_cast<CycloneReader *>(self)->_core->Log()->SamplesLost(
                                  static_cast<std::uint64_t>(status.total_count_change));
                          });
-    _reader =
-        Entity(dds_create_reader_rhc(_core->Participant(), _entityTopic.Get(),
-                                     MakeReaderQos(qos, partitions).get(), listener.get(), &_cache.Base),
-               "make a reader of topic " + topic.Name);
+    _reader = Entity(
+        dds_create_reader_rhc(_core->Participant(), _entityTopic.Get(),
+                              MakeReaderQos(topic, qos, partitions).get(), listener.get(), &_cache.Base),
+        "make a reader of topic " + topic.Name);
 }
 
 CycloneReader::~CycloneReader()

@@ -54,7 +54,7 @@ CycloneWriter::CycloneWriter(std::shared_ptr<SessionCore> core, const TopicDescr
             }
         });
     _writer = Entity(dds_create_writer(_core->Participant(), _entityTopic.Get(),
-                                       MakeWriterQos(qos, partitions).get(), listener.get()),
+                                       MakeWriterQos(topic, qos, partitions).get(), listener.get()),
                      "make a writer of topic " + topic.Name);
 }
 

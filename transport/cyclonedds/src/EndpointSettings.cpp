@@ -12,7 +12,8 @@ namespace
 // Longest time that Write waits for room in the writer's history.
 constexpr dds_duration_t LongestWait = DDS_MSECS(100);
 
-Qos MakeEndpointQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+Qos MakeEndpointQos(const TopicDescription &topic, const TopicQos &qos,
+                    const std::vector<std::string> &partitions)
 {
     Qos result = MakeQos();
     dds_qset_reliability(
@@ -26,7 +27,8 @@ Qos MakeEndpointQos(const TopicQos &qos, const std::vector<std::string> &partiti
     dds_qset_ignorelocal(result.get(), DDS_IGNORELOCAL_PARTICIPANT);
     const dds_data_representation_id_t representation = DDS_DATA_REPRESENTATION_XCDR1;
     dds_qset_data_representation(result.get(), 1, &representation);
-    dds_qset_userdata(result.get(), EndpointUserData.data(), EndpointUserData.size());
+    const std::string userData = MakeEndpointUserData(topic.TypeHash);
+    dds_qset_userdata(result.get(), userData.data(), userData.size());
     // An empty list is written out as the default partition: an empty one would not match another make's `*`.
     std::vector<const char *> names;
     for (const auto &name : partitions)
@@ -43,18 +45,20 @@ Qos MakeEndpointQos(const TopicQos &qos, const std::vector<std::string> &partiti
 
 }  // namespace
 
-Qos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+Qos MakeWriterQos(const TopicDescription &topic, const TopicQos &qos,
+                  const std::vector<std::string> &partitions)
 {
-    Qos result = MakeEndpointQos(qos, partitions);
+    Qos result = MakeEndpointQos(topic, qos, partitions);
     dds_qset_durability_service(result.get(), 0, DDS_HISTORY_KEEP_LAST, qos.Depth, DDS_LENGTH_UNLIMITED,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
     dds_qset_writer_data_lifecycle(result.get(), false);
     return result;
 }
 
-Qos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+Qos MakeReaderQos(const TopicDescription &topic, const TopicQos &qos,
+                  const std::vector<std::string> &partitions)
 {
-    return MakeEndpointQos(qos, partitions);
+    return MakeEndpointQos(topic, qos, partitions);
 }
 
 Entity MakeTopic(const SessionCore &core, const TopicDescription &topic, const ddsi_sertype *&type)

@@ -14,8 +14,10 @@ namespace Rabit::Cyclone
 // Larger samples are neither sent nor accepted.
 constexpr std::size_t MaxSample = LargestSample;
 
-Qos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions);
-Qos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions);
+Qos MakeWriterQos(const TopicDescription &topic, const TopicQos &qos,
+                  const std::vector<std::string> &partitions);
+Qos MakeReaderQos(const TopicDescription &topic, const TopicQos &qos,
+                  const std::vector<std::string> &partitions);
 
 // Makes a topic of opaque samples, for one writer or reader. `type` is set to the vendor's type, which lives
 // as long as the topic. Throws TransportError.

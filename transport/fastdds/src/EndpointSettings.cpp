@@ -24,7 +24,8 @@ void Apply(const TopicDescription &topic, const TopicQos &qos, rtps::EndpointAtt
 }
 
 template <typename EndpointQos>
-void ApplyQos(const TopicQos &qos, const std::vector<std::string> &partitions, EndpointQos &result)
+void ApplyQos(const TopicDescription &topic, const TopicQos &qos, const std::vector<std::string> &partitions,
+              EndpointQos &result)
 {
     result.m_reliability.kind = qos.Reliability == Reliability::Reliable ? dds::RELIABLE_RELIABILITY_QOS
                                                                          : dds::BEST_EFFORT_RELIABILITY_QOS;
@@ -34,7 +35,8 @@ void ApplyQos(const TopicQos &qos, const std::vector<std::string> &partitions, E
     // An empty list is written out as the default partition: an empty one would not match another make's `*`.
     std::vector<std::string> names = partitions.empty() ? std::vector<std::string>{""} : partitions;
     result.m_partition.names(names);
-    result.m_userData.data_vec({EndpointUserData.begin(), EndpointUserData.end()});
+    const std::string userData = MakeEndpointUserData(topic.TypeHash);
+    result.m_userData.data_vec({userData.begin(), userData.end()});
     result.data_sharing.off();
 }
 
@@ -56,10 +58,11 @@ rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const
     return attributes;
 }
 
-dds::WriterQos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+dds::WriterQos MakeWriterQos(const TopicDescription &topic, const TopicQos &qos,
+                             const std::vector<std::string> &partitions)
 {
     dds::WriterQos result;
-    ApplyQos(qos, partitions, result);
+    ApplyQos(topic, qos, partitions, result);
     return result;
 }
 
@@ -71,10 +74,11 @@ rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const
     return attributes;
 }
 
-dds::ReaderQos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions)
+dds::ReaderQos MakeReaderQos(const TopicDescription &topic, const TopicQos &qos,
+                             const std::vector<std::string> &partitions)
 {
     dds::ReaderQos result;
-    ApplyQos(qos, partitions, result);
+    ApplyQos(topic, qos, partitions, result);
     return result;
 }
 

@@ -11,10 +11,12 @@ namespace Rabit::FastDds
 TopicNames NamesOf(const TopicDescription &topic);
 
 rtps::WriterAttributes MakeWriterAttributes(const TopicDescription &topic, const TopicQos &qos);
-dds::WriterQos MakeWriterQos(const TopicQos &qos, const std::vector<std::string> &partitions);
+dds::WriterQos MakeWriterQos(const TopicDescription &topic, const TopicQos &qos,
+                             const std::vector<std::string> &partitions);
 
 rtps::ReaderAttributes MakeReaderAttributes(const TopicDescription &topic, const TopicQos &qos);
-dds::ReaderQos MakeReaderQos(const TopicQos &qos, const std::vector<std::string> &partitions);
+dds::ReaderQos MakeReaderQos(const TopicDescription &topic, const TopicQos &qos,
+                             const std::vector<std::string> &partitions);
 
 WriterId ToWriterId(const rtps::GUID_t &guid);
 

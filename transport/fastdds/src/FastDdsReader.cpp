@@ -33,7 +33,7 @@ FastDdsReader::FastDdsReader(std::shared_ptr<SessionCore> core, const TopicDescr
     {
         throw TransportError("Fast DDS cannot make a reader of topic " + topic.Name);
     }
-    if (!Announce(_core->Participant(), _reader, NamesOf(topic), MakeReaderQos(qos, partitions)))
+    if (!Announce(_core->Participant(), _reader, NamesOf(topic), MakeReaderQos(topic, qos, partitions)))
     {
         rtps::RTPSDomain::removeRTPSReader(_reader);
         throw TransportError("Fast DDS cannot announce a reader of topic " + topic.Name);

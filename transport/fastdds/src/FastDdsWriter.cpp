@@ -27,7 +27,7 @@ FastDdsWriter::FastDdsWriter(std::shared_ptr<SessionCore> core, const TopicDescr
     {
         throw TransportError("Fast DDS cannot make a writer of topic " + topic.Name);
     }
-    if (!Announce(_core->Participant(), _writer, NamesOf(topic), MakeWriterQos(qos, partitions)))
+    if (!Announce(_core->Participant(), _writer, NamesOf(topic), MakeWriterQos(topic, qos, partitions)))
     {
         rtps::RTPSDomain::removeRTPSWriter(_writer);
         throw TransportError("Fast DDS cannot announce a writer of topic " + topic.Name);

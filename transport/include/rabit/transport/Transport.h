@@ -187,6 +187,9 @@ struct TopicDescription
     // Set if and only if the type has a key. Computes the key hash of a sample; returns false if the bytes do
     // not decode. Called on any thread, on several at once too; must not throw.
     std::function<bool(SampleBytes, KeyHash &)> KeyOf;
+    // The hash of the type in ROS 2 (REP-2011), which writers and readers announce for programs of ROS 2;
+    // empty: none. Matches do not depend on it.
+    std::string TypeHash{};
 };
 
 // 16 bytes that identify one writer in the network (an RTPS GUID), different for each writer.

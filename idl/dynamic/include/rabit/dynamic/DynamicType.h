@@ -90,6 +90,7 @@ public:
     // because of memory alone.
     const std::string &Name() const override { return _name; }
     const std::string &IdlText() const override { return _idlText; }
+    const std::string &RosTypeHash() const override;
     std::unique_ptr<RabitMessage> Create() const override;
     std::shared_ptr<RabitMessage> CreateShared() const override;
     std::type_index CppType() const override;

@@ -88,6 +88,7 @@ struct Shapes
     std::deque<Shape> All;        // places do not change
     const Shape *Root = nullptr;  // a struct
     bool KeyFitsHash = false;     // no key takes more than 16 bytes
+    std::string RosTypeHash;      // MessageType::RosTypeHash of the root
 };
 
 // The name of an enumerator, or null.

@@ -36,13 +36,14 @@ template <class Message>
 class GeneratedMessageType final : public MessageType
 {
 public:
-    GeneratedMessageType(std::string name, std::string idlText)
-        : _name(std::move(name)), _idlText(std::move(idlText))
+    GeneratedMessageType(std::string name, std::string idlText, std::string rosTypeHash = "")
+        : _name(std::move(name)), _idlText(std::move(idlText)), _rosTypeHash(std::move(rosTypeHash))
     {
     }
 
     const std::string &Name() const override { return _name; }
     const std::string &IdlText() const override { return _idlText; }
+    const std::string &RosTypeHash() const override { return _rosTypeHash; }
     std::unique_ptr<RabitMessage> Create() const override { return std::make_unique<Message>(); }
     std::shared_ptr<RabitMessage> CreateShared() const override { return std::make_shared<Message>(); }
     std::type_index CppType() const override { return typeid(Message); }
@@ -159,6 +160,7 @@ private:
 
     std::string _name;
     std::string _idlText;
+    std::string _rosTypeHash;
 };
 
 // RabitMessage::Serialize and DeSerialize of a generated class: the sample's bytes, stype must be 0.

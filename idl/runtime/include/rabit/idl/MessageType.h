@@ -32,6 +32,13 @@ public:
     virtual const std::string &Name() const = 0;
     // The IDL that this type was generated from, the types it uses included: it compiles by itself.
     virtual const std::string &IdlText() const = 0;
+    // The hash by which ROS 2 names the definition of the type (REP-2011), as `RIHS01_df668c74...`; empty if
+    // ROS 2 cannot have the type.
+    virtual const std::string &RosTypeHash() const
+    {
+        static const std::string none;
+        return none;
+    }
     // A message of this type with default values, of the class CppType.
     virtual std::unique_ptr<RabitMessage> Create() const = 0;
     // The same, shared from the start: one allocation instead of two.
