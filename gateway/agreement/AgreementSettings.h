@@ -31,6 +31,9 @@ struct AgreementSettings
     std::vector<std::string> Members{};
     // How long a holder may hold without an answer. At least four of the slowest beats.
     Duration Lease = std::chrono::seconds(2);
+    // Answers to renewals ride in the beats of this node. A node with several paths answers with datagrams,
+    // since the beats of another path might not come.
+    bool RidesInBeats = true;
 
     // How long a voter keeps a claim for its holder, counted from when the renewal came. The holder counts
     // `Lease` from when it sent that renewal. Both clocks may be wrong by 1 % each, in opposite directions:

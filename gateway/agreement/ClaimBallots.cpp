@@ -6,12 +6,11 @@
 namespace Rabit
 {
 
-ClaimBallots::ClaimBallots(const AgreementSettings &settings, FenceStore &store, Duration now)
+ClaimBallots::ClaimBallots(const AgreementSettings &settings, std::uint64_t fences, Duration now)
     : _settings(settings),
       _group(settings.Group()),
-      _store(store),
-      _fences(store.Load()),
-      _stored(_fences),
+      _fences(fences),
+      _stored(fences),
       _votesFrom(now + settings.VotersLease())
 {
 }
@@ -55,6 +54,11 @@ std::optional<ClaimReply> ClaimBallots::OnRequest(std::string_view from, const C
     // A late copy of an order must not do what a later one has undone.
     if (request.Book == number && request.Number > book.Number)
     {
+        if (MustStore(request))
+        {
+            _ignored = Ignored::NotStored;
+            return std::nullopt;
+        }
         book.Number = request.Number;
         reply.Number = request.Number;
         for (const ClaimOrder &order : request.Orders)
@@ -68,8 +72,18 @@ std::optional<ClaimReply> ClaimBallots::OnRequest(std::string_view from, const C
 
 void ClaimBallots::EndBooks(Duration now)
 {
+    // Renewals only make a book longer.
+    if (now < _firstEnd)
+    {
+        return;
+    }
     std::erase_if(_grants, [&](const auto &grant) { return _books.at(grant.second.Book).Until <= now; });
     std::erase_if(_books, [now](const auto &book) { return book.second.Until <= now; });
+    _firstEnd = Duration::max();
+    for (const auto &[number, book] : _books)
+    {
+        _firstEnd = std::min(_firstEnd, book.Until);
+    }
 }
 
 ClaimBallots::Books::iterator ClaimBallots::BookOf(std::string_view from, const ClaimRequest &request,
@@ -101,6 +115,7 @@ ClaimBallots::Books::iterator ClaimBallots::BookOf(std::string_view from, const 
         _ignored = Ignored::TooMany;
         return _books.end();
     }
+    _firstEnd = std::min(_firstEnd, now + _settings.VotersLease());
     return _books
         .emplace(++_lastBook, Book{.Claimant = std::string(from),
                                    .Incarnation = request.Incarnation,
@@ -171,20 +186,27 @@ ClaimResult ClaimBallots::RefusedFor(const std::string &claim, const Grant *gran
     return refused;
 }
 
+bool ClaimBallots::MustStore(const ClaimRequest &request)
+{
+    bool must = false;
+    for (const ClaimOrder &order : request.Orders)
+    {
+        const auto grant = _grants.find(order.Name);
+        if (order.What == ClaimOrder::Kind::Accept && order.Fence > _stored && !IsLeap(order.Fence) &&
+            grant != _grants.end() && grant->second.Book == request.Book)
+        {
+            _storeWanted = std::max(_storeWanted, order.Fence + FencesAhead);
+            must = true;
+        }
+    }
+    return must && !_cannotStore;
+}
+
 bool ClaimBallots::Raise(std::uint64_t fence)
 {
-    if (fence > _fences && fence - _fences > LargestLeap)
+    if (IsLeap(fence) || fence > _stored)
     {
         return false;
-    }
-    if (fence > _stored)
-    {
-        _cannotStore = !_store.Store(fence + FencesAhead);
-        if (_cannotStore)
-        {
-            return false;
-        }
-        _stored = fence + FencesAhead;
     }
     _fences = std::max(_fences, fence);
     return true;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +11,6 @@
 
 #include "agreement/AgreementSettings.h"
 #include "agreement/ClaimMessages.h"
-#include "agreement/FenceStore.h"
 
 namespace Rabit
 {
@@ -23,7 +23,8 @@ namespace Rabit
 //   AgreementSettings::VotersLease, and takes all of its grants with it. Two incarnations of one name have
 //   two books, since the former one may still run.
 // - Grants live in memory. So a voter that starts abstains for as long: its former life may have granted
-//   anything. Only the highest fence is stored, in blocks, before it is used.
+//   anything. Only the highest fence is stored, in blocks, before it is used: a request with a higher one is
+//   answered once that is stored, which is up to the caller.
 // - It abstains while another live node has its name, since both would vote.
 //
 // A pure state machine. Time is passed in: that of a clock that runs on while the computer is suspended. Not
@@ -48,15 +49,29 @@ public:
         NoMember,    // the claimant is not in the list
         OtherGroup,  // its list or its lease is another one
         FormerLife,  // a later incarnation or session of the claimant is known
-        TooMany      // its name has too many books
+        TooMany,     // its name has too many books
+        NotStored    // it has a fence that must be stored first: take it again after Stored
     };
 
-    // Both must outlive the object. `now`: abstains for VotersLease from here on.
-    ClaimBallots(const AgreementSettings &settings, FenceStore &store, Duration now);
+    // The settings must outlive the object. `fences`: all up to this one may have been accepted. `now`:
+    // abstains for VotersLease from here on.
+    ClaimBallots(const AgreementSettings &settings, std::uint64_t fences, Duration now);
 
     // Returns the answer. Empty: this voter says nothing, and LastIgnored tells why.
     std::optional<ClaimReply> OnRequest(std::string_view from, const ClaimRequest &request, Duration now);
     Ignored LastIgnored() const { return _ignored; }
+
+    // The fence that must be stored; empty: none must.
+    std::optional<std::uint64_t> StoreWanted() const
+    {
+        return _storeWanted > _stored ? std::optional(_storeWanted) : std::nullopt;
+    }
+    // All fences up to this one are stored. Or they could not be: until they are, higher ones are refused.
+    void Stored(std::uint64_t upTo, bool isStored)
+    {
+        _stored = isStored ? std::max(_stored, upTo) : _stored;
+        _cannotStore = !isStored;
+    }
 
     // Another live node has this node's name.
     void NameIsTaken(Duration now) { _votesFrom = now + _settings.VotersLease(); }
@@ -71,20 +86,7 @@ public:
         Duration Until{0};        // if it is not renewed
     };
     std::optional<Holding> HolderOf(std::string_view claim, Duration now) const;
-    // Calls visit(claim, holding) for each claim.
-    template <typename Visit>
-    void VisitAll(Duration now, const Visit &visit) const
-    {
-        for (const auto &[claim, grant] : _grants)
-        {
-            if (const auto holding = HolderOf(claim, now))
-            {
-                visit(claim, *holding);
-            }
-        }
-    }
     std::uint64_t Fences() const { return _fences; }
-    bool CannotStore() const { return _cannotStore; }
 
 private:
     struct Book
@@ -110,18 +112,22 @@ private:
     ClaimResult Obey(const ClaimOrder &order, Books::value_type &book, Duration now);
     ClaimResult Ask(const ClaimOrder &order, Books::value_type &book, Duration now);
     ClaimResult RefusedFor(const std::string &claim, const Grant *grant, Duration now) const;
+    bool IsLeap(std::uint64_t fence) const { return fence > _fences && fence - _fences > LargestLeap; }
+    // Notes the fences of the request that must be stored. Returns true if it has to wait for that.
+    bool MustStore(const ClaimRequest &request);
     bool Raise(std::uint64_t fence);
 
     const AgreementSettings &_settings;
     const std::uint64_t _group;
-    FenceStore &_store;
     std::uint64_t _fences;
     std::uint64_t _stored;
+    std::uint64_t _storeWanted = 0;
     bool _cannotStore = false;
     Duration _votesFrom;
     std::uint64_t _lastBook = 0;
     Books _books;
     Grants _grants;
+    Duration _firstEnd = Duration::max();  // no book ends before
     Ignored _ignored = Ignored::Nothing;
 };
 

@@ -47,12 +47,16 @@ public:
     // Returns a renewal for all voters. The next one is due sooner if half of the lease has passed. If no
     // majority answers for a lease, the intervals double, up to a lease.
     ClaimRequest Renew(Duration now);
+    // Returns a renewal that rides in a beat. A datagram is due only once somewhat more than half of the
+    // lease has passed.
+    ClaimRequest RenewByBeat(Duration now);
     // Returns a request for orders to a voter whose book is known. It renews the lease, too.
     ClaimRequest OrdersTo(std::string_view voter, Duration now);
 
     // A voter whose lease has passed may name any book: without storage, and if its wall clock was set back,
     // its incarnation falls over a restart.
     Answer Take(std::string_view from, const ClaimReply &reply, Duration now);
+    std::uint32_t Session() const { return _session; }
     bool KnowsBookOf(std::string_view voter) const;
     // The end of the lease that this voter acknowledged; 0: of none.
     Duration UntilOf(std::string_view voter) const;
@@ -71,8 +75,10 @@ private:
     };
 
     ClaimRequest NewRequest(Duration now);
-    // Less than half of a lease is left of what a majority acknowledged.
-    bool IsLate(Duration now) const;
+    // From then on, less than half of a lease is left of what a majority acknowledged; with beats somewhat
+    // less.
+    Duration LateAfter() const;
+    bool IsLate(Duration now) const { return now > LateAfter(); }
     Duration OfMajority(std::vector<Duration> ends) const;
 
     const AgreementSettings &_settings;
@@ -84,6 +90,7 @@ private:
     // When the last renewals were sent, the newest at the end.
     std::deque<Duration> _sent;
     std::optional<Duration> _renewAt;
+    bool _ridesInBeats = false;
     std::map<std::string, Voter, std::less<>> _voters;
 };
 

@@ -99,6 +99,12 @@ std::optional<ClaimOrder> ClaimVotes::OrderTo(std::string_view voter) const
     return std::nullopt;
 }
 
+bool ClaimVotes::IsUnsent(std::string_view voter) const
+{
+    const auto found = _votes.find(voter);
+    return found != _votes.end() && found->second.Since == 0 && OrderTo(voter).has_value();
+}
+
 void ClaimVotes::Sent(std::string_view voter, std::uint32_t number)
 {
     const auto found = _votes.find(voter);

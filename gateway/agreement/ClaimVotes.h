@@ -57,6 +57,8 @@ public:
     void ForgetAll();
 
     std::optional<ClaimOrder> OrderTo(std::string_view voter) const;
+    // True if the present order has not been sent yet.
+    bool IsUnsent(std::string_view voter) const;
     // The present order goes in the request with this number.
     void Sent(std::string_view voter, std::uint32_t number);
     // Takes a result for the request with this number. Returns true if that changed orders to other voters.

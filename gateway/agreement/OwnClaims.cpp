@@ -25,6 +25,10 @@ bool OwnClaims::Want(const std::string &claim, bool keeps, Duration now)
     {
         if (_claims.size() >= AgreementSettings::MostClaims)
         {
+            JudgeAll(now);  // some may have been given up meanwhile
+        }
+        if (_claims.size() >= AgreementSettings::MostClaims)
+        {
             return false;
         }
         Claim wanted{.Votes = ClaimVotes(claim, _settings.Members), .Keeps = keeps};
@@ -54,30 +58,60 @@ void OwnClaims::GiveUp(const std::string &claim, Duration now)
     }
 }
 
-bool OwnClaims::IsMine(std::string_view claim, Duration now) const
+bool OwnClaims::IsWanted(std::string_view claim) const
 {
-    return FenceOf(claim, now).has_value();
+    const auto known = _claims.find(claim);
+    return known != _claims.end() && IsWanted(known->second);
+}
+
+std::vector<std::string> OwnClaims::Kept() const
+{
+    std::vector<std::string> kept;
+    for (const auto &[name, claim] : _claims)
+    {
+        if (claim.Keeps)
+        {
+            kept.push_back(name);
+        }
+    }
+    return kept;
+}
+
+bool OwnClaims::Lacks(Duration now) const
+{
+    return std::any_of(_claims.begin(), _claims.end(),
+                       [this, now](const auto &claim)
+                       { return IsWanted(claim.second) && !HoldingOf(claim.first, now); });
+}
+
+std::optional<OwnClaims::Holding> OwnClaims::HoldingOf(std::string_view claim, Duration now) const
+{
+    const auto known = _claims.find(claim);
+    if (known == _claims.end() || known->second.Now != Phase::Held)
+    {
+        return std::nullopt;
+    }
+    const Duration until = HeldUntil(known->second);
+    return now < until ? std::optional(Holding{known->second.Votes.Fence(), until}) : std::nullopt;
 }
 
 std::optional<std::uint64_t> OwnClaims::FenceOf(std::string_view claim, Duration now) const
 {
-    const auto known = _claims.find(claim);
-    const bool isMine =
-        known != _claims.end() && known->second.Now == Phase::Held && now < HeldUntil(known->second);
-    return isMine ? std::optional(known->second.Votes.Fence()) : std::nullopt;
+    const std::optional<Holding> holding = HoldingOf(claim, now);
+    return holding ? std::optional(holding->Fence) : std::nullopt;
 }
 
-std::vector<std::string> OwnClaims::Mine(Duration now) const
+std::map<std::string, OwnClaims::Holding, std::less<>> OwnClaims::Held(Duration now) const
 {
-    std::vector<std::string> mine;
+    std::map<std::string, Holding, std::less<>> held;
     for (const auto &[name, claim] : _claims)
     {
-        if (IsMine(name, now))
+        if (const std::optional<Holding> holding = HoldingOf(name, now))
         {
-            mine.push_back(name);
+            held.emplace(name, *holding);
         }
     }
-    return mine;
+    return held;
 }
 
 void OwnClaims::ClockStoodStill(Duration now)
@@ -399,7 +433,7 @@ std::optional<OwnClaims::Outgoing> OwnClaims::TakeDue(Duration now)
         if (HasOrders(voter))
         {
             retry.Done(now);
-            return Outgoing{.To = voter, .Request = OrdersTo(voter, now)};
+            return Outgoing{.To = voter, .Request = OrdersTo(voter, Orders::All, now)};
         }
         retry.Stop();
     }
@@ -410,12 +444,37 @@ std::optional<OwnClaims::Outgoing> OwnClaims::TakeDue(Duration now)
     return std::nullopt;
 }
 
-ClaimRequest OwnClaims::OrdersTo(const std::string &voter, Duration now)
+std::optional<ClaimRequest> OwnClaims::RenewByBeat(Duration now)
+{
+    return Renews() ? std::optional(_lease.RenewByBeat(now)) : std::nullopt;
+}
+
+std::vector<OwnClaims::Outgoing> OwnClaims::Leave(Duration now)
+{
+    for (auto &[name, claim] : _claims)
+    {
+        claim.Keeps = false;
+        Release(claim, now);
+    }
+    std::vector<Outgoing> last;
+    for (const auto &[voter, retry] : _retries)
+    {
+        const auto isUnsent = [&to = voter](const auto &claim) { return claim.second.Votes.IsUnsent(to); };
+        while (_lease.KnowsBookOf(voter) && std::any_of(_claims.begin(), _claims.end(), isUnsent))
+        {
+            last.push_back({.To = voter, .Request = OrdersTo(voter, Orders::Unsent, now)});
+        }
+    }
+    return last;
+}
+
+ClaimRequest OwnClaims::OrdersTo(const std::string &voter, Orders which, Duration now)
 {
     ClaimRequest request = _lease.OrdersTo(voter, now);
     for (auto &[name, claim] : _claims)
     {
-        const auto order = claim.Votes.OrderTo(voter);
+        const auto order =
+            which == Orders::All || claim.Votes.IsUnsent(voter) ? claim.Votes.OrderTo(voter) : std::nullopt;
         if (order && request.Orders.size() < ClaimRequest::MostOrders)
         {
             claim.Votes.Sent(voter, request.Number);

@@ -65,25 +65,46 @@ public:
     OwnClaims(const AgreementSettings &settings, std::function<std::uint64_t()> random);
 
     // Asks for a claim. `keeps`: it is asked for until GiveUp, whatever becomes of it; else once. Returns
-    // false if the name is empty or too long, or if there are too many claims. Without effect if it is wanted
-    // already.
+    // false if the name is empty or too long, or if there are too many claims, those among them that voters
+    // have not taken back yet. Without effect if it is wanted already.
     bool Want(const std::string &claim, bool keeps, Duration now);
     void GiveUp(const std::string &claim, Duration now);
+    // It is held, or asked for.
+    bool IsWanted(std::string_view claim) const;
+    // The claims that are asked for until GiveUp.
+    std::vector<std::string> Kept() const;
+    // True if a claim is wanted and not held.
+    bool Lacks(Duration now) const;
 
-    bool IsMine(std::string_view claim, Duration now) const;
+    struct Holding
+    {
+        std::uint64_t Fence = 0;
+        Duration Until{0};
+    };
+    // A claim that is held, and when its lease ends if it is not renewed; empty: it is not held.
+    std::optional<Holding> HoldingOf(std::string_view claim, Duration now) const;
+    // All claims that are held.
+    std::map<std::string, Holding, std::less<>> Held(Duration now) const;
+    bool IsMine(std::string_view claim, Duration now) const { return HoldingOf(claim, now).has_value(); }
     // The fence of a claim that is held; empty: it is not.
     std::optional<std::uint64_t> FenceOf(std::string_view claim, Duration now) const;
-    std::vector<std::string> Mine(Duration now) const;
     std::vector<Event> TakeEvents() { return std::exchange(_events, {}); }
 
     // The clock may have stood still: all claims are lost, and kept ones are asked for anew.
     void ClockStoodStill(Duration now);
 
     void OnReply(std::string_view from, const ClaimReply &reply, Duration now);
+    std::uint32_t Session() const { return _lease.Session(); }
     // When TakeDue is to be called; empty: nothing is wanted.
     std::optional<Duration> Due() const;
     // Does what is due, and returns one request; empty: there is none now.
     std::optional<Outgoing> TakeDue(Duration now);
+    // Gives all up, and returns the requests that say so, each to one voter.
+    std::vector<Outgoing> Leave(Duration now);
+    // True if there is a lease to renew.
+    bool Renews() const;
+    // Returns the renewal that rides in a beat; empty: nothing is to be renewed.
+    std::optional<ClaimRequest> RenewByBeat(Duration now);
 
 private:
     enum class Phase : std::uint8_t
@@ -120,11 +141,17 @@ private:
     void JudgeAll(Duration now);
     Duration HeldUntil(const Claim &claim) const;
     Duration InVainFrom(const Claim &claim) const;
-    bool Renews() const;
     bool HasOrders(std::string_view voter) const;
     void EndSession();
     void Hurry(Duration now);
-    ClaimRequest OrdersTo(const std::string &voter, Duration now);
+    static bool IsWanted(const Claim &claim) { return claim.Now != Phase::Releasing || claim.Keeps; }
+    // `which`: all orders, or those alone that were not sent yet.
+    enum class Orders : std::uint8_t
+    {
+        All,
+        Unsent
+    };
+    ClaimRequest OrdersTo(const std::string &voter, Orders which, Duration now);
 
     const AgreementSettings &_settings;
     const std::function<std::uint64_t()> _random;

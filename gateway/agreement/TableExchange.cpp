@@ -35,7 +35,7 @@ void TableExchange::OnDatagram(std::string_view from, std::span<const std::uint8
     }
     else if (const auto request = DecodeTableRequest(bytes))
     {
-        Answer(from, *request);
+        Answer(from, *request, now);
     }
     else if (const auto entries = DecodeTableEntries(bytes))
     {
@@ -54,17 +54,6 @@ void TableExchange::Forget(std::string_view peer)
     {
         _peers.erase(known);
     }
-}
-
-std::optional<TableExchange::Datagram> TableExchange::TakeDatagram()
-{
-    if (_waiting.empty())
-    {
-        return std::nullopt;
-    }
-    Datagram datagram = std::move(_waiting.front());
-    _waiting.pop_front();
-    return datagram;
 }
 
 TableExchange::Peer &TableExchange::PeerOf(std::string_view name, Duration now)
@@ -118,7 +107,7 @@ std::vector<TableEntry> TableExchange::UnknownTo(const TableSummary &summary) co
 {
     std::vector<TableEntry> unknown;
     std::size_t room = summary.Room;
-    const SharedTable::Pairs &own = _table.Summary();
+    const TableCopy::Pairs &own = _table.Summary();
     for (auto pair = own.lower_bound(summary.First); pair != own.end() && pair->first <= summary.Last; ++pair)
     {
         const auto theirs = summary.Pairs.find(pair->first);
@@ -133,8 +122,20 @@ std::vector<TableEntry> TableExchange::UnknownTo(const TableSummary &summary) co
     return unknown;
 }
 
-void TableExchange::Answer(std::string_view from, const TableRequest &request)
+void TableExchange::Answer(std::string_view from, const TableRequest &request, Duration now)
 {
+    Peer &peer = PeerOf(from, now);
+    if (!peer.RequestedAt || now - *peer.RequestedAt >= BetweenAnswers)
+    {
+        peer.RequestedAt = now;
+        peer.Requested = 0;
+    }
+    if (request.Keys.size() > TableCopy::MostKeys - peer.Requested)
+    {
+        _unanswered += request.Keys.size();
+        return;
+    }
+    peer.Requested += request.Keys.size();
     std::vector<TableEntry> wanted;
     for (const std::uint64_t key : request.Keys)
     {

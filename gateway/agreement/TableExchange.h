@@ -2,6 +2,7 @@
 
 #include <rabit/base/Backoff.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -16,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "agreement/SharedTable.h"
+#include "agreement/TableCopy.h"
 #include "agreement/TableMessages.h"
 
 namespace Rabit
@@ -41,7 +42,8 @@ public:
                                                     .Longest = std::chrono::seconds(16),
                                                     .QuickSteps = 4,
                                                     .Quick = std::chrono::milliseconds(250)};
-    // Copies of a summary's part, and parts that come faster from one peer, are not answered.
+    // Copies of a summary's part, and parts that come faster from one peer, are not answered. A peer that
+    // requests keys gets as many of them in that time as a table has, at most.
     static constexpr Duration BetweenAnswers = std::chrono::milliseconds(200);
     // Datagrams that wait to be sent. Others are dropped: a later beat begins anew.
     static constexpr std::size_t MostWaiting = 64;
@@ -55,7 +57,7 @@ public:
     };
 
     // The table must outlive the object.
-    explicit TableExchange(SharedTable &table) : _table(table) {}
+    explicit TableExchange(TableCopy &table) : _table(table) {}
 
     // A beat of another node has come, with the digest of its table.
     void OnDigest(std::string_view from, std::uint64_t digest, Duration now);
@@ -64,13 +66,25 @@ public:
     // The peer is LOST, or started again: its intervals are the first ones once it is heard.
     void Forget(std::string_view peer);
 
-    // One datagram that is to be sent now; empty: there is none.
-    std::optional<Datagram> TakeDatagram();
+    // The first datagram that waits, and that mayGo(datagram) lets go; empty: there is none.
+    template <typename MayGo>
+    std::optional<Datagram> TakeDatagram(const MayGo &mayGo)
+    {
+        const auto found = std::find_if(_waiting.begin(), _waiting.end(), mayGo);
+        if (found == _waiting.end())
+        {
+            return std::nullopt;
+        }
+        std::optional<Datagram> datagram(std::move(*found));
+        _waiting.erase(found);
+        return datagram;
+    }
+    bool IsWaiting() const { return !_waiting.empty(); }
 
     std::uint64_t Malformed() const { return _malformed; }
     // Datagrams that were not sent, since too many waited.
     std::uint64_t Dropped() const { return _dropped; }
-    // Parts of summaries that were not answered, since they came too fast.
+    // Parts of summaries, and keys of requests, that were not answered, since they came too fast.
     std::uint64_t Unanswered() const { return _unanswered; }
     std::size_t Peers() const { return _peers.size(); }
 
@@ -81,6 +95,8 @@ private:
         BackoffTimer<Duration> Ask;
         std::optional<Duration> AskedAt{};
         std::array<std::optional<Duration>, TableSummary::MostParts> AnsweredAt{};
+        std::optional<Duration> RequestedAt{};  // first of the keys that Requested counts
+        std::size_t Requested = 0;
         Duration HeardAt{0};
     };
 
@@ -88,12 +104,12 @@ private:
     void Answer(std::string_view from, const TableSummary &summary, Duration now);
     // Entries that differ, and as many others as the sender of the summary can take.
     std::vector<TableEntry> UnknownTo(const TableSummary &summary) const;
-    void Answer(std::string_view from, const TableRequest &request);
+    void Answer(std::string_view from, const TableRequest &request, Duration now);
     void Take(std::string_view from, const std::vector<TableEntry> &entries);
     void SendEntries(std::string_view to, const std::vector<TableEntry> &entries);
     void Send(std::string_view to, std::vector<std::uint8_t> bytes);
 
-    SharedTable &_table;
+    TableCopy &_table;
     std::map<std::string, Peer, std::less<>> _peers;
     std::deque<Datagram> _waiting;
     std::uint64_t _malformed = 0;

@@ -70,6 +70,9 @@ ConfigSection WholeFileSection()
           "and `radio` stand in each path."},
          {"fetch", "mapping", "", "{folder: /var/lib/rabit/recordings, from: [ground]}",
           "Files that other nodes may fetch with `rabit fetch`. Default: none."},
+         {"agreement", "mapping", "", "{members: [uav1, uav2, ground]}",
+          "The nodes that agree on claims, which one of them has at a time, and on a shared table. Default: "
+          "none."},
          {"record", "mapping", "", "{folder: /var/lib/rabit/recordings}",
           "Records the messages of this process. Default: nothing is recorded."},
          {"publish", "list of mappings", "", "[{message: Pose, type: Uav::Pose}]",
@@ -144,6 +147,21 @@ ConfigSection FetchSection()
         {{"folder", "path of a folder", "", "/var/lib/rabit/recordings", "The folder.", RequiredKey},
          {"from", "list of nodes; `*` and `?` are wildcards", "", "[ground]", "Nodes that may fetch.",
           RequiredKey}}};
+}
+
+ConfigSection AgreementSection()
+{
+    return {"agreement",
+            "the section `agreement`",
+            "The nodes that agree on claims, which one of them has at a time, and on a shared table. All "
+            "members need the same list and the same lease.",
+            {{"members", "list of nodes, 1 to 64", "", "[uav1, uav2, ground]",
+              "The nodes that vote, this one among them. A majority of them must hear each other. An odd "
+              "number is best.",
+              RequiredKey},
+             {"lease", "time from four of the slowest beats to 60s", "2s", "4s",
+              "A node without a majority loses its claims within this time, and others get them somewhat "
+              "later. The slowest beat is 500ms, or `radio: slowest_beat` with a budget."}}};
 }
 
 ConfigSection RecordSection()
@@ -357,9 +375,9 @@ std::vector<ConfigSection> PanelFieldSections()
 std::vector<ConfigSection> AllSections()
 {
     std::vector<ConfigSection> sections = {
-        WholeFileSection(), PublishSection(), SubscribeSection(), AcceptSection(), SendSection(),
-        SecuritySection(),  RadioSection(),   PathsSection(),     RecordSection(), BlackBoxSection(),
-        FetchSection(),     ForeignSection(), FoxgloveSection()};
+        WholeFileSection(), PublishSection(),   SubscribeSection(), AcceptSection(),  SendSection(),
+        SecuritySection(),  RadioSection(),     PathsSection(),     RecordSection(),  BlackBoxSection(),
+        FetchSection(),     AgreementSection(), ForeignSection(),   FoxgloveSection()};
     const std::vector<ConfigSection> fields = PanelFieldSections();
     sections.insert(sections.end(), fields.begin(), fields.end());
     return sections;

@@ -232,6 +232,17 @@ void ReadFetch(const YamlMap &map, GatewayConfig &config)
     }
 }
 
+void ReadAgreement(const YamlMap &map, GatewayConfig &config)
+{
+    if (const auto agreement = Section(map, "agreement", config))
+    {
+        AgreementRule &rule = config.Agreement.emplace();
+        rule.Line = map.Line("agreement");
+        agreement->Read("members", rule.Members);
+        agreement->Read("lease", rule.Lease);
+    }
+}
+
 std::optional<TrafficClass> ReadClass(const YamlMap &entry)
 {
     const int choice = entry.ReadChoice("class", TrafficClassWords());
@@ -337,6 +348,7 @@ GatewayConfig ConfigOf(const YamlMap &map, const std::string &file, const std::s
     ReadPaths(map, config);
     ReadRecord(map, config);
     ReadFetch(map, config);
+    ReadAgreement(map, config);
     ReadPublish(map, config);
     ReadSubscribe(map, config);
     ReadAccept(map, config);

@@ -35,6 +35,7 @@ public:
         CheckRadio(_config.Radio, "");
         CheckPaths();
         CheckLostAfter();
+        CheckAgreement();
         CheckRecording(_config, _whyNoType);
         CheckMessages(_config, _whyNoType);
         CheckForeign(_config, _whyNoType);
@@ -195,6 +196,58 @@ private:
             CheckSecurity(path.Security, place);
         }
         CheckInterfacesOfPaths();
+    }
+
+    void CheckAgreement() const
+    {
+        if (!_config.Agreement)
+        {
+            return;
+        }
+        const std::vector<std::string> &members = _config.Agreement->Members;
+        const int line = _config.Agreement->Line;
+        const int listLine = std::max(LineOf("agreement.members"), line);
+        if (_config.Tool)
+        {
+            Fail(line, "a tool agrees on nothing; expected no `agreement`");
+        }
+        if (members.empty() || members.size() > MostAgreementMembers)
+        {
+            Fail(listLine, "`members` has " + std::to_string(members.size()) + " nodes; expected 1 to " +
+                               std::to_string(MostAgreementMembers));
+        }
+        for (const std::string &member : members)
+        {
+            if (!IsNodeName(member))
+            {
+                Fail(listLine,
+                     "`" + member + "` in `members` is no node name; expected 1 to 64 of A-Z a-z 0-9 _ . -");
+            }
+        }
+        CheckNoneTwice(members, "members", listLine);
+        if (std::find(members.begin(), members.end(), _config.Node) == members.end())
+        {
+            Fail(listLine, "this node, `" + _config.Node + "`, is not in `members`" +
+                               NearestWordHint(_config.Node, members));
+        }
+        CheckLeaseOfAgreement();
+    }
+
+    void CheckLeaseOfAgreement() const
+    {
+        constexpr std::chrono::milliseconds longest = std::chrono::minutes(1);
+        std::chrono::milliseconds least{0};
+        for (const GatewayConfig &path : PathConfigsOf(_config))
+        {
+            const auto slowest = path.Radio.Budget ? path.Radio.SlowestBeat : std::chrono::milliseconds(500);
+            least = std::max(least, 4 * slowest);
+        }
+        if (_config.Agreement->Lease < least || _config.Agreement->Lease > longest)
+        {
+            Fail(std::max(LineOf("agreement.lease"), _config.Agreement->Line),
+                 "`lease` is out of range; expected " + std::to_string(least.count()) +
+                     "ms (four of the slowest beats) to 60s, the same at all members");
+        }
     }
 
     // Two paths on one network would hear each other, and send all twice.

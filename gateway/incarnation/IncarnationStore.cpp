@@ -1,17 +1,13 @@
 #include "incarnation/IncarnationStore.h"
 
-#include <fcntl.h>
-#include <rabit/base/NumberIn.h>
 #include <rabit/gateway/links/LinkMessages.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <fstream>
 #include <limits>
-#include <system_error>
 #include <utility>
+
+#include "incarnation/StoredNumber.h"
 
 namespace Rabit
 {
@@ -61,40 +57,6 @@ std::string FileName(const std::string &node)
     return name + ".incarnation";
 }
 
-// A file descriptor that is closed at the end.
-class SyncedFile
-{
-public:
-    SyncedFile(const std::filesystem::path &path, int flags)
-        : _descriptor(::open(path.c_str(), flags | O_CLOEXEC, 0644))
-    {
-    }
-    ~SyncedFile()
-    {
-        if (_descriptor >= 0)
-        {
-            ::close(_descriptor);
-        }
-    }
-    SyncedFile(const SyncedFile &) = delete;
-    SyncedFile &operator=(const SyncedFile &) = delete;
-
-    bool IsOpen() const { return _descriptor >= 0; }
-    bool Write(const std::string &text) const
-    {
-        return ::write(_descriptor, text.data(), text.size()) == static_cast<ssize_t>(text.size());
-    }
-    bool Sync() const { return ::fsync(_descriptor) == 0; }
-
-private:
-    int _descriptor;
-};
-
-std::string SystemError(const std::string &what, const std::filesystem::path &path)
-{
-    return what + ' ' + path.string() + ": " + std::generic_category().message(errno);
-}
-
 }  // namespace
 
 IncarnationStore::IncarnationStore(const std::filesystem::path &stateDirectory, const std::string &node)
@@ -139,7 +101,7 @@ void IncarnationStore::Save()
         counter = _last;
         _unsaved = false;
     }
-    const std::string error = Write(counter);
+    const std::string error = StoredNumber::Write(_file, counter);
     const std::lock_guard lock(_mutex);
     const std::string readError = std::exchange(_readError, "");
     _error = error.empty() ? readError : error;
@@ -154,53 +116,9 @@ std::string IncarnationStore::Error() const
 // Returns 0 if there is no file, or no counter in it.
 std::uint32_t IncarnationStore::ReadCounter()
 {
-    std::error_code ignored;
-    if (_file.empty() || !std::filesystem::exists(_file, ignored))
-    {
-        return 0;
-    }
-    std::ifstream in(_file);
-    std::string text;
-    if (!std::getline(in, text))
-    {
-        _readError = "cannot read the incarnation from " + _file.string();
-        return 0;
-    }
-    const auto counter = NumberIn<std::uint32_t>(text);
-    if (!counter)
-    {
-        _readError = "no incarnation in " + _file.string() + ": '" + text.substr(0, 40) + "'";
-    }
-    return counter.value_or(0);
-}
-
-// Writes a new file beside the old one and renames it, so that the disk holds one whole file at any moment.
-// Returns the failure in one line, or an empty text.
-std::string IncarnationStore::Write(std::uint32_t counter) const
-{
-    const std::filesystem::path directory = _file.parent_path();
-    std::error_code problem;
-    std::filesystem::create_directories(directory, problem);
-    if (problem)
-    {
-        return "cannot make " + directory.string() + ": " + problem.message();
-    }
-    std::filesystem::path fresh = _file;
-    fresh += ".new";
-    {
-        const SyncedFile file(fresh, O_WRONLY | O_CREAT | O_TRUNC);
-        if (!file.IsOpen() || !file.Write(std::to_string(counter) + '\n') || !file.Sync())
-        {
-            return SystemError("cannot write", fresh);
-        }
-    }
-    std::filesystem::rename(fresh, _file, problem);
-    if (problem)
-    {
-        return "cannot rename " + fresh.string() + ": " + problem.message();
-    }
-    const SyncedFile entry(directory, O_RDONLY | O_DIRECTORY);
-    return entry.IsOpen() && entry.Sync() ? "" : SystemError("cannot sync", directory);
+    return _file.empty() ? 0
+                         : static_cast<std::uint32_t>(StoredNumber::Read(
+                               _file, std::numeric_limits<std::uint32_t>::max(), "incarnation", _readError));
 }
 
 }  // namespace Rabit

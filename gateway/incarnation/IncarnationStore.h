@@ -61,7 +61,6 @@ public:
 
 private:
     std::uint32_t ReadCounter();
-    std::string Write(std::uint32_t counter) const;
 
     const std::filesystem::path _file;
     const WallClock _wallClock;

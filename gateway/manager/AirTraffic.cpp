@@ -116,7 +116,7 @@ bool AirTraffic::MayTakeCopy(std::string_view node, std::string_view queue, std:
            _schedule.MaySend(bytes, now);
 }
 
-void AirTraffic::CopySent()
+void AirTraffic::SentPast()
 {
     const Duration now = Now();
     const std::size_t bytes = TakeSent();

@@ -75,8 +75,8 @@ public:
     // True if a copy of a frame of the links may go past the schedule now: there is room in the budget, and
     // the frame is not of class bulk. An empty queue: acknowledgements.
     bool MayTakeCopy(std::string_view node, std::string_view queue, std::size_t bytes);
-    // That copy was sent.
-    void CopySent();
+    // That copy, or a datagram of the agreement, was sent past the schedule, and is paid for.
+    void SentPast();
     // A peer reported the delay of a datagram of this node.
     void Reported(CapacityEstimate::Peer peer, Duration delay, Duration arrivedAt, Duration now);
     void NothingLate(CapacityEstimate::Peer peer, Duration sentAt, Duration now)

@@ -3,7 +3,9 @@
 #include <rabit/gateway/GatewayTap.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "clocks/GpsTime.h"
@@ -78,6 +80,10 @@ void GatewayManager::Parts::Close()
         _workspace.RemoveQueueForwarder(_config.Name);
     }
     ReportUndelivered();
+    if (_agreement)
+    {
+        _agreement->Leave();
+    }
     for (const auto &path : _paths)
     {
         path->SayGoodbye();
@@ -101,10 +107,14 @@ std::chrono::nanoseconds GatewayManager::Parts::Service()
     Heard change;
     for (std::size_t path = 0; path < _paths.size(); ++path)
     {
-        const PeerTable::Change &heard = _paths[path]->TakeIn(now).Change;
-        if (heard.Any())
+        const Presence::Served &served = _paths[path]->TakeIn(now);
+        if (served.Change.Any())
         {
-            TakeIn(path, heard, change);
+            TakeIn(path, served.Change, change);
+        }
+        if (_agreement && served.Any())
+        {
+            TakeAgreements(served);
         }
     }
     if (_paths.size() > 1)
@@ -120,6 +130,10 @@ std::chrono::nanoseconds GatewayManager::Parts::Service()
         Explore(change, now);
     }
     Duration next = _foreign.Service(now);
+    if (_agreement)
+    {
+        next = std::min(next, _agreement->Serve(now));
+    }
     for (const auto &path : _paths)
     {
         next = std::min(next, path->Send(now));
@@ -180,10 +194,49 @@ GatewayManager::Parts::Parts(Closed /*tag*/, const GatewayConfig &config,
         throw ConfigError(_config.File, 0,
                           "the local message `" + FleetMessageNameOf(_config) + "` is of another type");
     }
+    if (_config.Agreement)
+    {
+        _agreement = MakeAgreement(random);
+    }
+    MakePaths(transports, random);
+    // Last, since what is above may throw, and this object is then not destroyed in order.
     _exploration.SetLinks(
         [this](const std::string &node, const std::string &queue, std::chrono::milliseconds expire)
         { _links.SetExpiry(node, queue, expire); });
-    MakePaths(transports, random);
+}
+
+std::unique_ptr<AgreementDriver> GatewayManager::Parts::MakeAgreement(const RandomSource &random)
+{
+    std::filesystem::path fences = _incarnations.File();
+    if (!fences.empty())
+    {
+        fences.replace_extension(".fence");
+    }
+    return std::make_unique<AgreementDriver>(
+        _config, _workspace.GetClock(), _incarnation, std::move(fences), random, _manager.WakeUpHandler(),
+        Handlers(),
+        AgreementDriver::Network{.Send =
+                                     [this](const std::string &node, std::span<const std::uint8_t> frame)
+                                 {
+                                     const std::size_t path = _choice.Of(node);
+                                     _links.SendOther(path, node, frame);
+                                     _paths[path]->SentPast();
+                                 },
+                                 .PathTo = [this](const std::string &node) { return _choice.Of(node); },
+                                 .HasRoom =
+                                     [this](const std::string &node, std::size_t bytes) {
+                                         return _paths[_choice.Of(node)]->MayTakeCopy(
+                                             node, "", bytes + LinkDriver::AboutTheHeaders);
+                                     }});
+}
+
+void GatewayManager::Parts::TakeAgreements(const Presence::Served &served)
+{
+    for (const Presence::Served::Agreement &told : served.Agreements)
+    {
+        _agreement->OnBeat(told);
+    }
+    _agreement->LookAt(*_peers);
 }
 
 void GatewayManager::Parts::MatchSubscriptions()
@@ -305,6 +358,8 @@ bool GatewayManager::Parts::IsNeeded(const std::string &node) const
                        { return std::any_of(rule.From.begin(), rule.From.end(), names); }) ||
            std::any_of(_config.Send.begin(), _config.Send.end(),
                        [&names](const SendRule &rule) { return names(rule.To); }) ||
+           (_config.Agreement &&
+            std::any_of(_config.Agreement->Members.begin(), _config.Agreement->Members.end(), names)) ||
            _links.HasPending(node);
 }
 

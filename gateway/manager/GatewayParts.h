@@ -16,6 +16,7 @@
 #include "foreign/ForeignTopics.h"
 #include "gateway.idl.h"
 #include "incarnation/IncarnationStore.h"
+#include "manager/AgreementDriver.h"
 #include "manager/Exploration.h"
 #include "manager/GatewayPath.h"
 #include "manager/NodeSecurity.h"
@@ -98,6 +99,10 @@ private:
     RabitHandlerThread *Handlers() const { return _handlers.get(); }
     GatewayPath &PathOf(const std::string &node) { return *_paths[_choice.Of(node)]; }
 
+    std::unique_ptr<AgreementDriver> MakeAgreement(const RandomSource &random);
+    // Takes in what the beats of a path told of the agreement of others.
+    void TakeAgreements(const Presence::Served &served);
+
     ConfigError NameTaken() const;
     // The beginning of each line of the log.
     static std::string LogNameOf(const GatewayConfig &config, const RabitWorkspace &workspace);
@@ -152,6 +157,7 @@ private:
     Duration _openedAt{0};
     bool _isOpen = false;
     NodeMembers _members;
+    std::unique_ptr<AgreementDriver> _agreement;  // null: the configuration has none
     std::vector<std::unique_ptr<GatewayPath>> _paths;
     std::optional<PeersOverPaths> _peers;
 };

@@ -1,5 +1,7 @@
 // The networks of a gateway: how they are made, and the choice between them.
 #include <algorithm>
+#include <span>
+#include <string_view>
 #include <utility>
 
 #include "manager/GatewayParts.h"
@@ -42,6 +44,22 @@ void GatewayManager::Parts::MakePaths(const std::vector<std::shared_ptr<Transpor
     {
         _paths.push_back(std::make_unique<GatewayPath>(configs[path], transports[path], path, shared));
         tables.push_back(&_paths.back()->Beats().Peers());
+        if (_agreement)
+        {
+            _paths.back()->Beats().SetAgreement(
+                {.Size = [this] { return _agreement->NewsSize(); },
+                 .Take = [this](std::size_t room) { return _agreement->News(room); }});
+        }
+        // Frames that come late, after the agreement was taken out of the configuration, are no fault.
+        _links.AddOtherFrames(
+            path, AgreementDriver::FirstByte,
+            [agreement = _agreement.get()](std::string_view node, std::span<const std::uint8_t> frame)
+            {
+                if (agreement != nullptr)
+                {
+                    agreement->OnFrame(node, frame);
+                }
+            });
     }
     _peers.emplace(std::move(tables), _choice);
     if (_paths.size() > 1)
@@ -53,7 +71,7 @@ void GatewayManager::Parts::MakePaths(const std::vector<std::shared_ptr<Transpor
                  const std::optional<std::size_t> second = _choice.Second(node, Now(), queue.empty());
                  return second && _paths[*second]->MayTakeCopy(node, queue, bytes) ? second : std::nullopt;
              },
-             .Sent = [this](std::size_t path) { _paths[path]->CopySent(); },
+             .Sent = [this](std::size_t path) { _paths[path]->SentPast(); },
              .TakesAnswers = [this](std::string_view node)
              { return _choice.Second(node, Now(), true).has_value(); }});
     }

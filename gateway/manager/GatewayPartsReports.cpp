@@ -76,6 +76,7 @@ void GatewayManager::Parts::PostFleet(Duration now)
     {
         fleet.malformed += path->Beats().Malformed() + path->Types().Malformed();
     }
+    fleet.malformed += _agreement ? _agreement->Malformed() : 0;
     ReportAir(fleet, now);
     FleetReport::AddNameProblems(*_peers, fleet);
     AddProblems(now, fleet);
@@ -225,11 +226,13 @@ void GatewayManager::Parts::AddProblems(Duration now, Gateway::Fleet &fleet) con
                                           "` is of another type than `" + publisher.Rule().Type + "`"});
         }
     }
-    for (const auto &problems : {_config.Tap ? _config.Tap->Problems() : std::vector<Gateway::Problem>(),
-                                 Diagnosis::OfSubscriptions(_subscriptions, *_peers, now - _openedAt, now),
-                                 Diagnosis::OfLostNodes(_subscriptions.Rules(), _config.Send, fleet, *_peers),
-                                 _outgoing->Problems(), _links.Problems(), _slow.Problems(now),
-                                 ManagerTroubles::ProblemsOf(_workspace.GetListOfTroubledManagers())})
+    for (const auto &problems :
+         {_config.Tap ? _config.Tap->Problems() : std::vector<Gateway::Problem>(),
+          Diagnosis::OfSubscriptions(_subscriptions, *_peers, now - _openedAt, now),
+          Diagnosis::OfLostNodes(_subscriptions.Rules(), _config.Send, fleet, *_peers),
+          _agreement ? _agreement->Problems(*_peers, now) : std::vector<Gateway::Problem>(),
+          _outgoing->Problems(), _links.Problems(), _slow.Problems(now),
+          ManagerTroubles::ProblemsOf(_workspace.GetListOfTroubledManagers())})
     {
         fleet.problems.insert(fleet.problems.end(), problems.begin(), problems.end());
     }

@@ -108,7 +108,8 @@ public:
     {
         return _air.MayTakeCopy(node, queue, bytes);
     }
-    void CopySent() { _air.CopySent(); }
+    // AirTraffic::SentPast
+    void SentPast() { _air.SentPast(); }
 
     // Matches the States of a node with the subscriptions.
     void SetWanted(const PeerTable::Peer &peer, const std::vector<StateRepair::Wanted> &states)

@@ -28,7 +28,7 @@ TypeExchange::TypeExchange(const GatewayConfig &config, Presence &presence, Link
       _largestFrame(LargestLinkFrame(config.MaxDatagram, SomePathHasKeys(config))),
       _answers([this](std::uint64_t definition) { return TextOf(definition); })
 {
-    _links.SetOtherFrames(_path, TypeFrames::FirstByte,
+    _links.AddOtherFrames(_path, TypeFrames::FirstByte,
                           [this](std::string_view node, std::span<const std::uint8_t> frame)
                           { OnFrame(node, frame); });
 }

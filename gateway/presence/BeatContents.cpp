@@ -27,6 +27,11 @@ std::size_t Fit(std::size_t most, std::size_t size, std::size_t &room)
     return count;
 }
 
+std::size_t SizeOf(const AgreementNews &agreement)
+{
+    return BeatFormat::Agreement(agreement.Renewal.size(), agreement.Answers.size());
+}
+
 std::size_t SizeOfStrains(std::size_t count)
 {
     return count == 0 ? 0 : BeatFormat::Wanted(count * BeatExtensions::StrainBytes);
@@ -82,6 +87,17 @@ std::size_t BeatContents::SizeOfMarks() const
            BeatFormat::FirstHeard(std::min(_firstHeard.size(), BeatExtensions::MostFirstHeard));
 }
 
+std::optional<AgreementNews> BeatContents::TakeAgreement(std::size_t &room)
+{
+    if (!HasAgreement() || room < SizeOf(AgreementNews()))
+    {
+        return std::nullopt;
+    }
+    AgreementNews agreement = _agreement.Take(room);
+    room -= std::min(room, SizeOf(agreement));
+    return agreement;
+}
+
 std::size_t BeatContents::SizeOfFleetSum() const
 {
     return _fleetSumBeats > 0 ? BeatFormat::FleetSum : 0;
@@ -114,8 +130,9 @@ std::size_t BeatContents::SizeOfLeastPart(Duration now) const
 std::size_t BeatContents::LeastSize(Duration now) const
 {
     const std::size_t part = SizeOfLeastPart(now);
-    return part == 0 ? BeatFormat::Empty
-                     : BeatFormat::WithNews + SizeOfMarks() + SizeOfProblems(now) + SizeOfFleetSum() +
+    const std::size_t marks = SizeOfMarks() + SizeOfAgreement();
+    return part == 0 ? (HasAgreement() ? BeatFormat::WithNews + marks : BeatFormat::Empty)
+                     : BeatFormat::WithNews + marks + SizeOfProblems(now) + SizeOfFleetSum() +
                            SizeOfWorstStrain() + part;
 }
 
@@ -136,7 +153,7 @@ std::size_t BeatContents::Size(Duration now) const
     const std::size_t wants =
         std::min(BeatFormat::MostWants,
                  _peers.Missing().Due(now, BeatFormat::MostWants) + _questions.Count(BeatFormat::MostWants));
-    const std::size_t news = SizeOfMarks() + SizeOfFleetSum() +
+    const std::size_t news = SizeOfMarks() + SizeOfAgreement() + SizeOfFleetSum() +
                              SizeOfStrains(StrainsWithin(BeatFormat::Largest)) + SizeOfProblems(now) +
                              wants * BeatFormat::Wanted(_questions.Longest()) +
                              _types.Due(now, BeatFormat::MostTypeQuestions) * BeatFormat::TypeQuestion +
@@ -153,6 +170,7 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
 {
     std::size_t room = std::min(most, BeatFormat::Largest);
     room -= std::min(room, BeatFormat::WithNews + SizeOfMarks());
+    const std::optional<AgreementNews> agreement = TakeAgreement(room);
     // Reserved, since only a few beats tell of problems and of the fleet.
     const std::size_t problems = SizeOfProblems(now) <= room ? SizeOfProblems(now) : 0;
     room -= problems;
@@ -198,6 +216,10 @@ void BeatContents::Fill(Gateway::Beat &beat, Duration now, std::size_t most)
     if (_isReplay)
     {
         BeatExtensions::MarkReplay(beat);
+    }
+    if (agreement)
+    {
+        BeatExtensions::Say(beat, *agreement);
     }
     if (!_firstHeard.empty())
     {

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "presence/PeerTable.h"
 #include "presence/StateQuestions.h"
 #include "types/TypeQuestions.h"
+#include "wire/AgreementNews.h"
 #include "wire/BeatFormat.h"
 #include "wire/LinkStrain.h"
 #include "wire/ProblemCount.h"
@@ -59,6 +61,16 @@ public:
 
     // This node is a tool, and its beats say so.
     void BeTool() { _isTool = true; }
+    // Each beat tells of an agreement from now on. A beat without room for BeatFormat::Agreement(0, 0) bytes
+    // does not.
+    struct AgreementSource
+    {
+        std::function<std::size_t()> Size;  // bytes that the next beat would take for it
+        // For the beat that is sent now, in that many bytes at most.
+        std::function<AgreementNews(std::size_t room)> Take;
+    };
+    void SetAgreement(AgreementSource agreement) { _agreement = std::move(agreement); }
+    bool HasAgreement() const { return static_cast<bool>(_agreement.Take); }
     // This node plays a recording, and its beats say so.
     void BeReplay() { _isReplay = true; }
 
@@ -93,7 +105,7 @@ public:
 
     // Largest size of the next beat's body, in bytes.
     std::size_t Size(Duration now) const;
-    // Size of a body in which a part of the announcement fits, if one is due; else that of an empty beat.
+    // Size of a body in which the agreement fits, and a part of the announcement, if one is due.
     std::size_t LeastSize(Duration now) const;
     // Fills the beat with the contents that are due now and fit into a body of `most` bytes.
     void Fill(Gateway::Beat &beat, Duration now, std::size_t most);
@@ -104,6 +116,9 @@ private:
     void AddPart(Gateway::Beat &beat, Duration now, std::size_t &room);
     void AddStates(Gateway::Beat &beat, std::size_t &room);
     std::size_t SizeOfMarks() const;
+    std::size_t SizeOfAgreement() const { return HasAgreement() ? _agreement.Size() : 0; }
+    // Empty: there is none, or no room for it. Takes its room.
+    std::optional<AgreementNews> TakeAgreement(std::size_t &room);
     std::size_t SizeOfFleetSum() const;
     std::size_t SizeOfWorstStrain() const;
     std::size_t StrainsWithin(std::size_t room) const;
@@ -119,6 +134,7 @@ private:
     PeerTable &_peers;
     bool _isTool = false;
     bool _isReplay = false;
+    AgreementSource _agreement{};  // empty: there is none
     std::vector<LinkStrain> _strains;
     std::vector<std::uint32_t> _firstHeard;  // sorted
     std::size_t _nextFirstHeard = 0;

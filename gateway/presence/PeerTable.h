@@ -16,6 +16,7 @@
 #include "presence/HeardBeat.h"
 #include "presence/MissingOffers.h"
 #include "presence/SentBeats.h"
+#include "wire/AgreementNews.h"
 #include "wire/LinkStrain.h"
 #include "wire/ProblemCount.h"
 
@@ -60,10 +61,11 @@ public:
     {
         std::string Node;
         std::uint64_t Incarnation = 0;
-        std::uint32_t Tag = 0;            // of node and incarnation (names/NodeTag.h)
-        bool IsTool = false;              // UP as long as it is kept; it has no offers and no states
-        bool IsReplay = false;            // it plays a recording
-        std::vector<LinkStrain> Strains;  // as its newest beat reports them
+        std::uint32_t Tag = 0;                   // of node and incarnation (names/NodeTag.h)
+        bool IsTool = false;                     // UP as long as it is kept; it has no offers and no states
+        bool IsReplay = false;                   // it plays a recording
+        std::optional<AgreementNews> Agreement;  // as its newest beat tells; empty: it has none
+        std::vector<LinkStrain> Strains;         // as its newest beat reports them
         // It hears this node by this path and by no better one (gateway/paths), as its newest beat says.
         bool HearsHereFirst = false;
         // The sum of the nodes that it hears, as its beats told last (BeatExtensions::FleetSum).

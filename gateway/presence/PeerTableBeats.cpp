@@ -20,6 +20,7 @@ void PeerTable::TakeIn(Peer &peer, const HeardBeat &heard, Change &change)
     peer.Beats.Add(heard.Sequence);
     peer.IsReplay = BeatExtensions::IsReplay(heard.Beat);
     peer.Strains = BeatExtensions::StrainsIn(heard.Beat);
+    peer.Agreement = BeatExtensions::AgreementIn(heard.Beat);
     const bool hearsHereFirst =
         BeatExtensions::IsFirstHeardHere(heard.Beat, _ownTag).value_or(peer.HearsHereFirst);
     change.State |= std::exchange(peer.HearsHereFirst, hearsHereFirst) != hearsHereFirst;

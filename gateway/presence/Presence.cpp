@@ -115,6 +115,7 @@ void Presence::Served::Clear()
     StatesAsked.clear();
     Delays.clear();
     NothingLate.clear();
+    Agreements.clear();
     TypesAsked.clear();
 }
 
@@ -207,6 +208,10 @@ void Presence::TakeIn(const HeardBeat &heard, Duration now, Served &served)
     _owesNews |= _contents.Delays().Note(peer.Tag, peer.Clock.LastDelay(), heard.Arrival);
     TakeDelays(heard, peer, served);
     TakeQuestions(heard, now, served);
+    if (_contents.HasAgreement() && peer.Agreement)
+    {
+        served.Agreements.push_back({heard.Node, heard.Incarnation, *peer.Agreement});
+    }
     if (!NewsOf(heard.Beat).states.empty() || change.Offers)
     {
         served.StatesTold.push_back(heard.Node);

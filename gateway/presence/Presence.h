@@ -58,6 +58,11 @@ public:
     void BeReplay() { _contents.BeReplay(); }
     // States after how long other nodes are LOST (PeerTable). Before Open.
     void SetLostAfter(Duration time) { _peers.SetLostAfter(time); }
+    // BeatContents::SetAgreement. Before Open.
+    void SetAgreement(BeatContents::AgreementSource agreement)
+    {
+        _contents.SetAgreement(std::move(agreement));
+    }
     // Starts to send and to receive. Throws TransportError.
     void Open(TransportSession &session, const Gateway::Announcement &announcement);
     // Says goodbye and stops.
@@ -85,13 +90,21 @@ public:
         std::vector<DelayHeard> Delays;
         // Nodes whose beats tell that no datagram of this node is late, and when they sent these beats.
         std::vector<std::pair<std::uint32_t, Duration>> NothingLate;
+        // Nodes whose beats told of their agreement, in order.
+        struct Agreement
+        {
+            std::string Node;
+            std::uint64_t Incarnation = 0;
+            AgreementNews News;
+        };
+        std::vector<Agreement> Agreements;
         // Nodes that request the text of a type, and the type.
         std::vector<std::pair<std::string, BeatExtensions::TypeQuestion>> TypesAsked;
 
         bool Any() const
         {
             return Change.Any() || !StatesTold.empty() || !StatesAsked.empty() || !Delays.empty() ||
-                   !NothingLate.empty() || !TypesAsked.empty();
+                   !NothingLate.empty() || !Agreements.empty() || !TypesAsked.empty();
         }
         void Clear();
     };

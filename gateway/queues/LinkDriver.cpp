@@ -70,10 +70,9 @@ std::uint64_t LinkDriver::Incarnation() const
     return _links->Incarnation();
 }
 
-void LinkDriver::SetOtherFrames(std::size_t path, std::uint8_t firstByte, OtherFrames take)
+void LinkDriver::AddOtherFrames(std::size_t path, std::uint8_t firstByte, OtherFrames take)
 {
-    _otherByte = firstByte;
-    WayOf(path).Other = std::move(take);
+    WayOf(path).Others.emplace_back(firstByte, std::move(take));
 }
 
 LinkDriver::Way &LinkDriver::WayOf(std::size_t path)
@@ -92,7 +91,7 @@ void LinkDriver::Open(TransportSession &session)
     Way &way = WayOf(path);
     way.Session = &session;
     // So that the first message need not wait until the nodes have heard of the writer.
-    if (!_config.Accept.empty() || !_config.Send.empty())
+    if (!_config.Accept.empty() || !_config.Send.empty() || _config.Agreement)
     {
         WriterOf(path);
     }

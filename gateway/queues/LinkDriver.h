@@ -56,10 +56,12 @@ public:
 
     // The present incarnation of this node.
     std::uint64_t Incarnation() const;
-    // Sets the handler of frames that begin with `firstByte`, which is no version of the links, and come by
+    // Adds the handler of frames that begin with `firstByte`, which is no version of the links, and come by
     // that path. It is called on the transport's threads, with the node that wrote the frame. Before Open.
     using OtherFrames = std::function<void(std::string_view node, std::span<const std::uint8_t> frame)>;
-    void SetOtherFrames(std::size_t path, std::uint8_t firstByte, OtherFrames take);
+    void AddOtherFrames(std::size_t path, std::uint8_t firstByte, OtherFrames take);
+    // Bytes of IPv4, UDP, RTPS and the encapsulation, for a frame.
+    static constexpr std::size_t AboutTheHeaders = 110;
     // Sends such a frame to that node alone, by that path; gateway's thread only. The requesting node has to
     // notice a loss.
     void SendOther(std::size_t path, const std::string &node, std::span<const std::uint8_t> frame);
@@ -185,8 +187,8 @@ private:
     struct Way
     {
         std::size_t Number = 0;
-        OtherFrames Other;
-        DelayMeter Delays;  // guarded
+        std::vector<std::pair<std::uint8_t, OtherFrames>> Others;  // by their first byte
+        DelayMeter Delays;                                         // guarded
         TransportSession *Session = nullptr;
         // One for all nodes, made when the node has a use for it: each endpoint of DDS costs all others
         // discovery.
@@ -260,8 +262,6 @@ private:
     LinkDatagrams _outbox;
     std::unique_ptr<LinkNode> _links;
     LinkTime _nextService{0};  // when the gateway's thread will call Service at the latest
-
-    std::uint8_t _otherByte = LinkVersion;
 
     std::vector<std::unique_ptr<Way>> _ways;
     std::size_t _open = 0;  // of these

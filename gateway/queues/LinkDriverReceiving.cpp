@@ -24,10 +24,13 @@ void LinkDriver::OnFrame(SampleBytes bytes, const SampleInfo &info, Way &way)
         ++_malformed;
         return;
     }
-    if (way.Other && encoded[0] == _otherByte)
+    for (const auto &[firstByte, take] : way.Others)
     {
-        way.Other(info.Node, encoded);
-        return;
+        if (encoded[0] == firstByte)
+        {
+            take(info.Node, encoded);
+            return;
+        }
     }
     if (encoded[0] != LinkVersion)
     {

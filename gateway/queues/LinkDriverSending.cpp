@@ -10,13 +10,6 @@
 
 namespace Rabit
 {
-namespace
-{
-
-// Of IPv4, UDP, RTPS and the encapsulation, for a frame.
-constexpr std::size_t AboutTheHeaders = 110;
-
-}  // namespace
 
 LinkDriver::Duration LinkDriver::Service()
 {

@@ -36,6 +36,48 @@ void CheckNames(const Fleet &fleet, std::vector<Finding> &findings)
     }
 }
 
+bool IsSameAgreement(AgreementRule one, AgreementRule other)
+{
+    std::sort(one.Members.begin(), one.Members.end());
+    std::sort(other.Members.begin(), other.Members.end());
+    return one.Members == other.Members && one.Lease == other.Lease;
+}
+
+void CheckAgreements(const Fleet &fleet, std::vector<Finding> &findings)
+{
+    std::map<int, const GatewayConfig *> first;  // with an agreement, in each domain
+    for (const GatewayConfig &config : fleet)
+    {
+        const auto known = config.Agreement ? first.emplace(config.Domain, &config).first : first.end();
+        if (known != first.end() && !IsSameAgreement(*known->second->Agreement, *config.Agreement))
+        {
+            Add(findings,
+                {config.File,
+                 LineIn(config, "agreement"),
+                 {config.Node},
+                 "`agreement` has other members, or another lease, than that of `" + known->second->Node +
+                     "` in " + known->second->File + "; all members need the same"});
+        }
+    }
+    for (const GatewayConfig &config : fleet)
+    {
+        const auto known = config.Agreement ? first.end() : first.find(config.Domain);
+        if (known == first.end())
+        {
+            continue;
+        }
+        const std::vector<std::string> &members = known->second->Agreement->Members;
+        if (std::find(members.begin(), members.end(), config.Node) != members.end())
+        {
+            Add(findings, {config.File,
+                           LineIn(config, "node"),
+                           {config.Node},
+                           "`" + config.Node + "` is a member of the `agreement` in " + known->second->File +
+                               ", and has none itself: it does not vote"});
+        }
+    }
+}
+
 // Groups domains that are connected because one process has a gateway in each (two gateways with two names).
 std::vector<std::set<int>> ConnectedDomains(const Fleet &fleet)
 {
@@ -196,6 +238,7 @@ std::vector<Finding> FindingsOf(const Fleet &fleet)
     CheckDomains(fleet, findings);
     CheckTransports(fleet, findings);
     CheckPeers(fleet, findings);
+    CheckAgreements(fleet, findings);
     for (const GatewayConfig &config : fleet)
     {
         WantCheck(config, fleet, findings).Run();

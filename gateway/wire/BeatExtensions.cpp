@@ -187,6 +187,44 @@ std::optional<std::uint32_t> FleetSumIn(const Gateway::Beat &beat)
     return bytes ? std::optional(Take<std::uint32_t>(*bytes)) : std::nullopt;
 }
 
+void Say(Gateway::Beat &beat, const AgreementNews &agreement)
+{
+    std::vector<std::uint8_t> bytes;
+    Put(agreement.Group, bytes);
+    Put(agreement.Table, bytes);
+    bytes.insert(bytes.end(), agreement.Renewal.begin(), agreement.Renewal.end());
+    Add(beat, Agreement).states.assign(bytes.begin(), bytes.end());
+    std::span<const std::uint8_t> answers(agreement.Answers);
+    while (!answers.empty())
+    {
+        const auto some = answers.first(std::min(answers.size(), AgreementNews::AnswersOfOne));
+        answers = answers.subspan(some.size());
+        Add(beat, AgreementAnswers).states.assign(some.begin(), some.end());
+    }
+}
+
+std::optional<AgreementNews> AgreementIn(const Gateway::Beat &beat)
+{
+    std::optional<std::span<const std::uint8_t>> bytes = Find(beat, Agreement, AgreementLeast);
+    if (!bytes)
+    {
+        return std::nullopt;
+    }
+    AgreementNews agreement;
+    agreement.Group = Take<std::uint32_t>(*bytes);
+    agreement.Table = Take<std::uint64_t>(*bytes);
+    agreement.Renewal.assign(bytes->begin(), bytes->end());
+    for (const Gateway::Wanted &wanted : NewsOf(beat).wants)
+    {
+        const bool isOfAnswers = wanted.node == Nobody && wanted.offers == AgreementAnswers;
+        if (isOfAnswers && agreement.Answers.size() + wanted.states.size() <= AgreementNews::MostAnswers)
+        {
+            agreement.Answers.insert(agreement.Answers.end(), wanted.states.begin(), wanted.states.end());
+        }
+    }
+    return agreement;
+}
+
 std::optional<ProblemCount> ProblemsIn(const Gateway::Beat &beat)
 {
     std::optional<std::span<const std::uint8_t>> bytes = Find(beat, Problems, ProblemBytes);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gateway.idl.h"
+#include "wire/AgreementNews.h"
 #include "wire/LinkStrain.h"
 #include "wire/ProblemCount.h"
 
@@ -32,10 +33,18 @@ inline constexpr std::uint16_t FirstHeardHere = 6;
 // come. A tool that hears nodes with the same sum has heard the whole fleet.
 inline constexpr std::uint16_t FleetSum = 7;
 
+// What the sender tells of its agreement, in Wanted::states: group (4), digest of the table (8), and the
+// renewal of its lease (0 or 8).
+inline constexpr std::uint16_t Agreement = 8;
+// Answers to renewals of others (AgreementNode::Beat), in Wanted::states; some of them if there are several
+// extensions.
+inline constexpr std::uint16_t AgreementAnswers = 9;
+
 // Bytes of Wanted::states.
 inline constexpr std::size_t TypeBytes = 16;
 inline constexpr std::size_t StrainBytes = 8;  // of each
 inline constexpr std::size_t ProblemBytes = 6;
+inline constexpr std::size_t AgreementLeast = 12;
 // Most strains that are read from one beat.
 inline constexpr std::size_t MostStrains = 4;
 // Most tags in FirstHeardHere. A beat with as many says nothing of the tags outside of its window.
@@ -80,5 +89,9 @@ std::optional<bool> IsFirstHeardHere(const Gateway::Beat &beat, std::uint32_t ta
 void SayFleetSum(Gateway::Beat &beat, std::uint32_t sum);
 // Empty if the beat does not tell.
 std::optional<std::uint32_t> FleetSumIn(const Gateway::Beat &beat);
+
+void Say(Gateway::Beat &beat, const AgreementNews &agreement);
+// Empty if the sender has no agreement.
+std::optional<AgreementNews> AgreementIn(const Gateway::Beat &beat);
 
 }  // namespace Rabit::BeatExtensions

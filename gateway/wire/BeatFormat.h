@@ -57,6 +57,13 @@ constexpr std::size_t FirstHeard(std::size_t nodes)
     return nodes == 0 ? 0 : Wanted(4 * nodes);
 }
 
+// An AgreementNews with so many bytes of its renewal and of its answers. An extension has 52 bytes of
+// answers.
+constexpr std::size_t Agreement(std::size_t renewal, std::size_t answers)
+{
+    return Wanted(12 + renewal) + answers / 52 * Wanted(52) + (answers % 52 == 0 ? 0 : Wanted(answers % 52));
+}
+
 // A question for a type.
 inline constexpr std::size_t TypeQuestion = Wanted(16);
 inline constexpr std::size_t MostTypeQuestions = 4;

@@ -150,6 +150,42 @@ TEST_F(BeatContentsTest, AReplaySaysInEachBeatThatItIsOne)
     }
 }
 
+TEST_F(BeatContentsTest, AnAgreementIsSaidInEachBeatAndIsToldItsRoom)
+{
+    AgreementNews news{.Group = 1, .Table = 2};
+    std::size_t told = 0;
+    contents.SetAgreement(
+        {.Size = [&news] { return BeatFormat::Agreement(news.Renewal.size(), news.Answers.size()); },
+         .Take =
+             [&](std::size_t room)
+         {
+             told = room;
+             AgreementNews taken = news;
+             if (BeatFormat::Agreement(news.Renewal.size(), news.Answers.size()) > room)
+             {
+                 taken.Answers.clear();
+             }
+             return taken;
+         }});
+    BeginLongAgo(100, 0);
+    EXPECT_EQ(contents.Size(10s), BeatFormat::WithNews + BeatFormat::Agreement(0, 0));
+    EXPECT_EQ(contents.LeastSize(10s), contents.Size(10s));
+    EXPECT_EQ(BeatExtensions::AgreementIn(Next(10s)), news);
+
+    news.Renewal.assign(8, 3);
+    news.Answers.assign(2 * 13, 4);
+    EXPECT_EQ(contents.Size(12s), BeatFormat::WithNews + BeatFormat::Agreement(8, 26));
+    EXPECT_EQ(BeatExtensions::AgreementIn(Next(12s, contents.Size(12s))), news);
+    EXPECT_EQ(told, BeatFormat::Agreement(8, 26));
+    const Gateway::Beat next = Next(13s, BeatFormat::WithNews + BeatFormat::Agreement(8, 0));
+    EXPECT_EQ(BeatExtensions::AgreementIn(next)->Renewal, news.Renewal);
+    EXPECT_THAT(BeatExtensions::AgreementIn(next)->Answers, IsEmpty());
+    told = 0;
+    const std::size_t less = BeatFormat::WithNews + BeatFormat::Agreement(0, 0) - 1;
+    EXPECT_FALSE(BeatExtensions::AgreementIn(Next(14s, less))) << "Next looks at the size";
+    EXPECT_EQ(told, 0u) << "nothing was taken that is not said";
+}
+
 TEST_F(BeatContentsTest, StrainsAreSaidAsLongAsThereAreAnyAndThenCostNothing)
 {
     BeginLongAgo(100, 0);

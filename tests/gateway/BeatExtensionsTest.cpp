@@ -46,6 +46,32 @@ TEST(BeatExtensions, WhatIsAskedForIsWhatIsUnderstood)
     EXPECT_THAT(BeatExtensions::TypeQuestionsIn(beat), ElementsAre(first, second));
 }
 
+TEST(BeatExtensions, WhatABeatTellsOfAnAgreementIsWhatIsUnderstood)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    EXPECT_FALSE(BeatExtensions::AgreementIn(beat));
+    const AgreementNews told{.Group = 0xfedcba98,
+                             .Table = 0x0123456789abcdef,
+                             .Renewal = std::vector<std::uint8_t>(8, 7),
+                             .Answers = std::vector<std::uint8_t>(AgreementNews::MostAnswers, 9)};
+    BeatExtensions::Say(beat, told);
+    EXPECT_EQ(BeatExtensions::AgreementIn(beat), told);
+
+    Gateway::Beat idle = BeatAt(std::chrono::seconds(1));
+    BeatExtensions::Say(idle, AgreementNews{.Group = 1});
+    EXPECT_EQ(BeatExtensions::AgreementIn(idle), AgreementNews{.Group = 1});
+}
+
+TEST(BeatExtensions, OfTooManyAnswersOfAnAgreementTheFirstOnesAreRead)
+{
+    Gateway::Beat beat = BeatAt(std::chrono::seconds(1));
+    BeatExtensions::Say(
+        beat,
+        AgreementNews{.Group = 1, .Answers = std::vector<std::uint8_t>(2 * AgreementNews::MostAnswers, 9)});
+    ASSERT_TRUE(BeatExtensions::AgreementIn(beat));
+    EXPECT_EQ(BeatExtensions::AgreementIn(beat)->Answers.size(), AgreementNews::MostAnswers);
+}
+
 TEST(BeatExtensions, OfFewNodesABeatTellsOfEachWhetherItIsHeardFirstHere)
 {
     const std::vector<std::uint32_t> tags{3, 5};

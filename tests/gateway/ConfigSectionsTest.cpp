@@ -20,7 +20,8 @@ namespace
 
 // For each section: files around one key, with all else that the section needs. `@` is where the key goes.
 const std::map<std::string, std::vector<std::string>> Frames = {
-    {"", {"node: a\n@\n", "@\n"}},
+    {"", {"node: a\n@\n", "@\n", "node: uav1\n@\n"}},
+    {"agreement", {"node: uav1\nagreement: {members: [uav1], @}\n", "node: uav1\nagreement: {@}\n"}},
     {"publish",
      {"node: a\npublish:\n  - {message: M, type: T, @}\n", "node: a\npublish:\n  - {type: T, @}\n",
       "node: a\npublish:\n  - {message: M, @}\n"}},

@@ -773,5 +773,40 @@ TEST_F(GatewayConfigTest, GarbledFilesAreRefusedOrReadButNeverEndTheProcess)
     EXPECT_GT(refused, 250);
 }
 
+TEST_F(GatewayConfigTest, ReadsAnAgreement)
+{
+    EXPECT_FALSE(Load("node: uav1\n").Agreement);
+    const GatewayConfig config =
+        Load("node: uav1\nagreement:\n  members: [ground, uav1, uav2]\n  lease: 4s\n");
+    ASSERT_TRUE(config.Agreement);
+    EXPECT_EQ(config.Agreement->Members, (std::vector<std::string>{"ground", "uav1", "uav2"}));
+    EXPECT_EQ(config.Agreement->Lease, 4s);
+    EXPECT_EQ(Load("node: uav1\nagreement: {members: [uav1]}\n").Agreement->Lease, 2s);
+}
+
+TEST_F(GatewayConfigTest, SaysWhatIsWrongWithAnAgreement)
+{
+    EXPECT_EQ(ErrorOf("node: uav1\nagreement:\n  members: []\n"),
+              "node.yaml:3: `members` has 0 nodes; expected 1 to 64");
+    EXPECT_EQ(ErrorOf("node: uav1\nagreement:\n  members: [uav1, \"uav*\"]\n"),
+              "node.yaml:3: `uav*` in `members` is no node name; expected 1 to 64 of A-Z a-z 0-9 _ . -");
+    EXPECT_EQ(ErrorOf("node: uav1\nagreement:\n  members: [uav1, uav2, uav1]\n"),
+              "node.yaml:3: `uav1` stands twice under `members`");
+    EXPECT_EQ(ErrorOf("node: uav1\nagreement:\n  members: [ground, uav11]\n"),
+              "node.yaml:3: this node, `uav1`, is not in `members`; did you mean `uav11`?");
+    EXPECT_EQ(ErrorOf("node: uav1\nagreement:\n  members: [uav1]\n  lease: 1s\n"),
+              "node.yaml:4: `lease` is out of range; expected 2000ms (four of the slowest beats) to 60s, the "
+              "same at all members");
+    EXPECT_EQ(ErrorOf("node: uav1\nradio: {budget: 5kB/s}\nagreement: {members: [uav1]}\n"),
+              "node.yaml:3: `lease` is out of range; expected 8000ms (four of the slowest beats) to 60s, the "
+              "same at all members");
+    std::string many = "node: uav1\nagreement:\n  members: [uav1";
+    for (std::size_t i = 0; i < MostAgreementMembers; ++i)
+    {
+        many += ", m" + std::to_string(i);
+    }
+    EXPECT_EQ(ErrorOf(many + "]\n"), "node.yaml:3: `members` has 65 nodes; expected 1 to 64");
+}
+
 }  // namespace
 }  // namespace Rabit

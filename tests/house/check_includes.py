@@ -15,12 +15,12 @@ SOURCES = {".h", ".hpp", ".c", ".cpp", ".cc"}
 # The rooms of the gateway, from the bottom up, and the rooms that each may include. "links" stands for the public
 # headers of gateway/links; the list includes the rooms that drive its protocol.
 ROOMS = {
-    "agreement": [],
     "air": [],
     "keys": [],
     "names": [],
     "clocks": [],
     "incarnation": ["links"],
+    "agreement": ["incarnation"],
     "wire": ["names", "links"],
     "configuration": ["air", "names", "wire"],
     "types": ["names", "wire"],
@@ -30,7 +30,7 @@ ROOMS = {
     "queues": ["air", "names", "clocks", "incarnation", "wire", "links", "presence"],
     "foreign": ["air", "names", "clocks", "wire", "mirrors", "queues"],
     "report": ["names", "wire", "presence", "paths", "mirrors", "queues"],
-    "manager": ["air", "keys", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "paths",
+    "manager": ["agreement", "air", "keys", "names", "clocks", "configuration", "incarnation", "wire", "links", "types", "presence", "paths",
                 "mirrors", "queues", "foreign", "report"],
 }
 

@@ -1,5 +1,6 @@
 #include "agreement/ClaimBallots.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -13,20 +14,7 @@ namespace
 {
 
 using namespace std::chrono_literals;
-
-class StubFences final : public FenceStore
-{
-public:
-    std::uint64_t Load() override { return Highest; }
-    bool Store(std::uint64_t upTo) override
-    {
-        Highest = Works ? upTo : Highest;
-        return Works;
-    }
-
-    std::uint64_t Highest = 0;
-    bool Works = true;
-};
+using ::testing::IsEmpty;
 
 class Ballots : public ::testing::Test
 {
@@ -44,13 +32,12 @@ protected:
         request.Number = ++_number;
         request.Orders = {{.What = what, .Fence = fence, .Name = claim}};
         _last = request;
-        return *_ballots.OnRequest(from, request, _now);
+        return _ballots.OnRequest(from, request, _now).value_or(ClaimReply());
     }
 
     const AgreementSettings _settings{
         .Self = "ground", .Incarnation = 5, .Members = {"ground", "uav1", "uav2"}};
-    StubFences _store;
-    ClaimBallots _ballots{_settings, _store, 0s};
+    ClaimBallots _ballots{_settings, 0, 0s};
     std::chrono::nanoseconds _now = 10s;
     std::uint32_t _renewal = 0;
     std::uint32_t _number = 0;
@@ -155,15 +142,34 @@ TEST_F(Ballots, AcceptNoFenceWithoutAGrant)
 TEST_F(Ballots, StoreAFenceBeforeItIsUsed)
 {
     Order("uav1", ClaimOrder::Kind::Ask, "cell");
-    _store.Works = false;
+    EXPECT_FALSE(_ballots.StoreWanted());
+    EXPECT_THAT(Order("uav1", ClaimOrder::Kind::Accept, "cell", 7).Results, IsEmpty());
+    EXPECT_EQ(_ballots.LastIgnored(), ClaimBallots::Ignored::NotStored);
+    EXPECT_EQ(_ballots.Fences(), 0U);
+    const auto upTo = _ballots.StoreWanted();
+    ASSERT_TRUE(upTo);
+    EXPECT_GE(*upTo, 7U);
+    _ballots.Stored(*upTo, true);
+    const auto reply = _ballots.OnRequest("uav1", _last, _now);
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->Results.at(0).What, ClaimResult::Kind::Accepted);
+    EXPECT_EQ(_ballots.Fences(), 7U);
+    EXPECT_FALSE(_ballots.StoreWanted());
+}
+
+TEST_F(Ballots, RefuseAFenceThatCouldNotBeStoredUntilItIs)
+{
+    Order("uav1", ClaimOrder::Kind::Ask, "cell");
+    Order("uav1", ClaimOrder::Kind::Accept, "cell", 7);
+    const auto upTo = _ballots.StoreWanted();
+    ASSERT_TRUE(upTo);
+    _ballots.Stored(*upTo, false);
     EXPECT_EQ(Order("uav1", ClaimOrder::Kind::Accept, "cell", 7).Results.at(0).What,
               ClaimResult::Kind::Refused);
-    EXPECT_TRUE(_ballots.CannotStore());
-    _store.Works = true;
+    EXPECT_EQ(_ballots.StoreWanted(), upTo);
+    _ballots.Stored(*upTo, true);
     EXPECT_EQ(Order("uav1", ClaimOrder::Kind::Accept, "cell", 7).Results.at(0).What,
               ClaimResult::Kind::Accepted);
-    EXPECT_GE(_store.Highest, 7U);
-    EXPECT_EQ(_ballots.Fences(), 7U);
 }
 
 TEST_F(Ballots, RefuseAFenceFarAboveAllThatTheyKnow)

@@ -37,6 +37,8 @@ public:
     };
 
     Network Air;
+    // Of each node; 0: there are no beats. Before Start.
+    Duration BeatPeriod{0};
     std::vector<std::string> Violations;
     std::map<std::string, std::size_t> Sent;  // datagrams of each node; one for all counts once
 
@@ -66,6 +68,9 @@ public:
     {
         Member &member = _members[name];
         ++member.Incarnation;
+        // Nodes do not beat at the same moment.
+        const auto place = std::find(_names.begin(), _names.end(), name) - _names.begin();
+        member.NextBeat = _now + BeatPeriod * place / static_cast<std::int64_t>(_names.size());
         member.Node = std::make_unique<AgreementNode>(
             AgreementSettings{.Self = name, .Incarnation = member.Incarnation, .Members = member.Lists},
             member.Fences, [this] { return _random.Next(); }, Local(member));
@@ -80,7 +85,17 @@ public:
         member.Node.reset();
         member.Told.clear();
     }
-    void LoseStorage(const std::string &name) { _members[name].Fences.Highest = 0; }
+    // As Kill, but in order.
+    void Stop(const std::string &name)
+    {
+        Member &member = _members[name];
+        for (const AgreementNode::Datagram &last : member.Node->Leave(Local(member)))
+        {
+            Send(name, last);
+        }
+        Kill(name);
+    }
+    void LoseStorage(const std::string &name) { _members[name].Fences = 0; }
     bool IsUp(const std::string &name) const { return _members.at(name).Node != nullptr; }
     // A suspended process does nothing, and its clock runs on. A frozen one does not know of that time.
     void Suspend(const std::string &name, bool isSuspended) { _members[name].IsSuspended = isSuspended; }
@@ -193,21 +208,11 @@ private:
     // Shortest time between two looks at a node that says that something is due.
     static constexpr Duration Tick = std::chrono::microseconds(100);
 
-    struct MemoryStore final : FenceStore
-    {
-        std::uint64_t Highest = 0;
-        std::uint64_t Load() override { return Highest; }
-        bool Store(std::uint64_t upTo) override
-        {
-            Highest = upTo;
-            return true;
-        }
-    };
     struct Member
     {
         std::unique_ptr<AgreementNode> Node;
         std::vector<std::string> Lists;
-        MemoryStore Fences;
+        std::uint64_t Fences = 0;  // stored
         std::uint64_t Incarnation = 0;
         double Rate = 1.0;
         Duration Slept{0};
@@ -217,11 +222,14 @@ private:
         std::vector<std::string> Keeps;
         std::vector<OwnClaims::Event> Told;
         Duration LookedAt{-1};
+        Duration NextBeat{0};
     };
     struct Packet
     {
         std::string From, To;
         std::vector<std::uint8_t> Bytes;
+        std::optional<AgreementNode::Beat> Beat{};
+        std::uint64_t Incarnation = 0;  // of a beat
     };
     struct Holding
     {
@@ -248,6 +256,7 @@ private:
         {
             if (member.Node && !member.IsSuspended)
             {
+                next = BeatPeriod > Duration(0) ? std::min(next, member.NextBeat) : next;
                 if (const auto due = member.Node->Due())
                 {
                     next = std::min(next, std::max(TrueOf(member, *due), member.LookedAt + Tick));
@@ -272,19 +281,50 @@ private:
             return;
         }
         member.LookedAt = _now;
-        while (auto datagram = member.Node->TakeDue(Local(member)))
+        do
         {
-            ++Sent[name];
-            for (const std::string &to :
-                 datagram->To.empty() ? _names : std::vector<std::string>{datagram->To})
+            while (auto datagram = member.Node->TakeDue(Local(member)))
+            {
+                Send(name, *datagram);
+            }
+        } while (StoreFences(member));
+        if (BeatPeriod > Duration(0) && _now >= member.NextBeat)
+        {
+            member.NextBeat = _now + BeatPeriod;
+            const AgreementNode::Beat beat = member.Node->TakeBeat(Local(member));
+            for (const std::string &to : _names)
             {
                 if (to != name)
                 {
-                    Send({name, to, datagram->Bytes});
+                    Send({name, to, {}, beat, member.Incarnation});
                 }
             }
         }
         Judge(name, member);
+    }
+
+    // Returns true if that may have made answers due.
+    bool StoreFences(Member &member)
+    {
+        const auto upTo = member.Node->StoreWanted();
+        if (upTo)
+        {
+            member.Fences = *upTo;
+            member.Node->Stored(*upTo, true, Local(member));
+        }
+        return upTo.has_value();
+    }
+
+    void Send(const std::string &name, const AgreementNode::Datagram &datagram)
+    {
+        ++Sent[name];
+        for (const std::string &to : datagram.To.empty() ? _names : std::vector<std::string>{datagram.To})
+        {
+            if (to != name)
+            {
+                Send({name, to, datagram.Bytes, {}, 0});
+            }
+        }
     }
 
     void Send(const Packet &packet)
@@ -309,7 +349,15 @@ private:
             Member &to = _members[packet.To];
             if (to.Node && !to.IsSuspended)
             {
-                to.Node->OnDatagram(packet.From, packet.Bytes, Local(to));
+                if (packet.Beat)
+                {
+                    to.Node->OnBeat(packet.From, packet.Incarnation, *packet.Beat, Local(to));
+                }
+                else
+                {
+                    to.Node->OnDatagram(packet.From, packet.Bytes, Local(to));
+                }
+                StoreFences(to);
                 Judge(packet.To, to);
             }
         }

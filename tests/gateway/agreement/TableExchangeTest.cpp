@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "SimRandom.h"
-#include "agreement/SharedTable.h"
+#include "agreement/TableCopy.h"
 #include "agreement/TableMessages.h"
 
 namespace Rabit
@@ -32,7 +32,7 @@ protected:
     Datagrams TakeAll()
     {
         Datagrams datagrams;
-        while (auto datagram = _exchange.TakeDatagram())
+        while (auto datagram = _exchange.TakeDatagram([](const auto &) { return true; }))
         {
             datagrams.push_back(std::move(*datagram));
         }
@@ -42,7 +42,7 @@ protected:
     {
         for (std::size_t i = 0; i < keys; ++i)
         {
-            ASSERT_EQ(_table.Raise("key " + std::to_string(i), 1), SharedTable::Answer::Done);
+            ASSERT_EQ(_table.Raise("key " + std::to_string(i), 1), TableCopy::Answer::Done);
         }
     }
     // A summary of keys that this node does not have.
@@ -56,7 +56,7 @@ protected:
         return summary;
     }
 
-    SharedTable _table{"ground", 1};
+    TableCopy _table{"ground", 1};
     TableExchange _exchange{_table};
 };
 
@@ -206,10 +206,41 @@ TEST_F(TableExchanges, SendTheEntriesThatAreRequested)
     EXPECT_EQ(DecodeTableEntries(datagrams.front().Bytes), _table.EntriesOf(key));
 }
 
+TEST_F(TableExchanges, SendAWholeTableToOnePeerIn200MillisecondsAtMostHoweverOftenItRequests)
+{
+    Fill(1);
+    const auto request = EncodeTableRequest(
+        {.Keys = std::vector<std::uint64_t>(TableRequest::MostKeys, _table.Summary().begin()->first)});
+    std::size_t answers = 0;
+    for (int i = 0; i < 50; ++i)
+    {
+        _exchange.OnDatagram("uav1", request, 199ms);
+        answers += TakeAll().empty() ? 0U : 1U;
+    }
+    EXPECT_EQ(answers, TableCopy::MostKeys / TableRequest::MostKeys);
+    _exchange.OnDatagram("uav2", request, 199ms);
+    EXPECT_FALSE(TakeAll().empty()) << "another peer";
+    _exchange.OnDatagram("uav1", request, 399ms);
+    EXPECT_FALSE(TakeAll().empty());
+}
+
+TEST_F(TableExchanges, GiveTheFirstDatagramThatMayGo)
+{
+    Fill(1);
+    _exchange.OnDigest("uav1", 7, 0s);
+    _exchange.OnDigest("uav2", 7, 0s);
+    EXPECT_FALSE(_exchange.TakeDatagram([](const auto &) { return false; }));
+    const auto datagram = _exchange.TakeDatagram([](const auto &waiting) { return waiting.To == "uav2"; });
+    ASSERT_TRUE(datagram);
+    EXPECT_EQ(datagram->To, "uav2");
+    EXPECT_EQ(TakeAll().size(), 1U);
+    EXPECT_FALSE(_exchange.IsWaiting());
+}
+
 TEST_F(TableExchanges, SendBackWhatIsNewerThanAnEntryThatCame)
 {
     Fill(1);
-    SharedTable older("uav1", 1);
+    TableCopy older("uav1", 1);
     older.Raise("key 0", -5);
     _exchange.OnDatagram("uav1", EncodeTableEntries(older.Entries()).front(), 0s);
     const Datagrams datagrams = TakeAll();
@@ -219,7 +250,7 @@ TEST_F(TableExchanges, SendBackWhatIsNewerThanAnEntryThatCame)
 
 TEST_F(TableExchanges, SendNothingBackForAnEntryThatIsNew)
 {
-    SharedTable other("uav1", 1);
+    TableCopy other("uav1", 1);
     other.Write("key", "value");
     _exchange.OnDatagram("uav1", EncodeTableEntries(other.Entries()).front(), 0s);
     EXPECT_THAT(TakeAll(), IsEmpty());
@@ -281,13 +312,13 @@ TEST_F(TableExchanges, StayWithinTheirBoundsUnderAnyBytes)
         _exchange.OnDatagram("uav1", bytes, std::chrono::milliseconds(i));
         ASSERT_LE(TakeAll().size(), TableExchange::MostWaiting);
     }
-    EXPECT_LE(_table.Entries().size(), SharedTable::MostKeys);
+    EXPECT_LE(_table.Entries().size(), TableCopy::MostKeys);
     EXPECT_GT(_exchange.Malformed(), 0U);
     for (const TableEntry &entry : _table.Entries())
     {
         EXPECT_TRUE(HasGoodKey(entry) && HasGoodValue(entry));
     }
-    SharedTable other("uav1", 1);
+    TableCopy other("uav1", 1);
     for (const auto &datagram : EncodeTableEntries(_table.Entries()))
     {
         const auto entries = DecodeTableEntries(datagram);

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "SimRandom.h"
-#include "agreement/SharedTable.h"
+#include "agreement/TableCopy.h"
 #include "agreement/TableExchange.h"
 
 namespace Rabit
@@ -51,13 +51,13 @@ public:
     {
         Node &node = _nodes[name];
         node.Exchange.reset();
-        node.Table = std::make_unique<SharedTable>(name, incarnation);
+        node.Table = std::make_unique<TableCopy>(name, incarnation);
         node.Exchange = std::make_unique<TableExchange>(*node.Table);
         node.BeatAt = _now + _random.Between(Duration(0), Beat);
         node.HeardAt.clear();
     }
 
-    SharedTable &operator[](const std::string &name) { return *_nodes.at(name).Table; }
+    TableCopy &operator[](const std::string &name) { return *_nodes.at(name).Table; }
     const std::vector<std::string> &Names() const { return _names; }
 
     // Whether the second one hears the first.
@@ -87,11 +87,11 @@ public:
 
     bool AreEqual() const
     {
-        const SharedTable &first = *_nodes.at(_names.front()).Table;
+        const TableCopy &first = *_nodes.at(_names.front()).Table;
         return std::all_of(_names.begin(), _names.end(),
                            [&](const std::string &name)
                            {
-                               const SharedTable &table = *_nodes.at(name).Table;
+                               const TableCopy &table = *_nodes.at(name).Table;
                                return table.Entries() == first.Entries() && table.Digest() == first.Digest();
                            });
     }
@@ -114,7 +114,7 @@ private:
 
     struct Node
     {
-        std::unique_ptr<SharedTable> Table;
+        std::unique_ptr<TableCopy> Table;
         std::unique_ptr<TableExchange> Exchange;
         Duration BeatAt{0};
         int Island = 0;
@@ -191,7 +191,7 @@ private:
             {
                 to.Exchange->OnDatagram(packet.From, packet.Bytes, _now);
             }
-            while (auto datagram = to.Exchange->TakeDatagram())
+            while (auto datagram = to.Exchange->TakeDatagram([](const auto &) { return true; }))
             {
                 ++Sent;
                 LongestSent = std::max(LongestSent, datagram->Bytes.size());

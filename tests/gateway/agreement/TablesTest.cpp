@@ -37,7 +37,7 @@ std::string StateKeyOf(const std::string &name)
 // A node writes its own state, and one of the keys that all write.
 void WriteSomething(TableFleet &fleet, const std::string &name, Sim::SimRandom &random, TableOracle &oracle)
 {
-    SharedTable &table = fleet[name];
+    TableCopy &table = fleet[name];
     const std::string state = std::to_string(random.Index(1000));
     table.Write(StateKeyOf(name), state);
     oracle.States[name] = state;
@@ -124,7 +124,7 @@ TEST(Tables, AreEqualThreeBeatsAfterTheLastCutAndHaveAllThatWasSaid)
         const TableOracle oracle = FlyTables(fleet, seed, false);
         fleet.RunFor(3 * TableFleet::Beat);
         ASSERT_TRUE(fleet.AreEqual()) << "seed " << seed;
-        SharedTable &table = fleet["ground"];
+        TableCopy &table = fleet["ground"];
         if (oracle.Numbers.any())
         {
             ASSERT_EQ(std::get<NumberSet>(*table.Find("flown")), oracle.Numbers) << "seed " << seed;
@@ -212,12 +212,11 @@ TEST(Tables, CostNothingInACut)
 TEST(Tables, OfTheLargestSizeAreEqualWithinThreeBeatsInDatagramsOf1200Bytes)
 {
     TableFleet fleet({"a", "b"}, 4);
-    for (std::size_t i = 0; i < SharedTable::MostKeys; ++i)
+    for (std::size_t i = 0; i < TableCopy::MostKeys; ++i)
     {
         std::string key = std::to_string(i);
         key.resize(TableEntry::LongestKey, 'k');
-        ASSERT_EQ(fleet["a"].Write(key, std::string(TableEntry::LongestValue, 'v')),
-                  SharedTable::Answer::Done);
+        ASSERT_EQ(fleet["a"].Write(key, std::string(TableEntry::LongestValue, 'v')), TableCopy::Answer::Done);
     }
     fleet.RunFor(3 * TableFleet::Beat);
     EXPECT_TRUE(fleet.AreEqual());

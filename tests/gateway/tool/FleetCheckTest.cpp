@@ -127,6 +127,29 @@ TEST(FleetCheck, TwoNodesOfOneNameAreToldUnlessTheyAreGatewaysOfOneProcess)
     EXPECT_THAT(LinesOf({NodeOf("uav1"), other}), IsEmpty());
 }
 
+TEST(FleetCheck, AgreementsThatDifferAndMembersWithoutOneAreTold)
+{
+    GatewayConfig one = NodeOf("uav1");
+    one.Lines["agreement"] = 5;
+    one.Agreement.emplace().Members = {"uav1", "uav2"};
+    GatewayConfig other = NodeOf("uav2");
+    other.Lines["agreement"] = 5;
+    other.Agreement.emplace().Members = {"uav2", "uav1"};
+    EXPECT_THAT(LinesOf({one, other}), IsEmpty());
+    const std::string differs =
+        "uav2.yaml:5: `agreement` has other members, or another lease, than that of `uav1` in uav1.yaml; all "
+        "members need the same";
+    other.Agreement->Lease = std::chrono::seconds(4);
+    EXPECT_THAT(LinesOf({one, other}), ElementsAre(differs));
+    other.Agreement->Lease = one.Agreement->Lease;
+    other.Agreement->Members.push_back("uav3");
+    EXPECT_THAT(LinesOf({one, other}), ElementsAre(differs));
+    other.Agreement.reset();
+    EXPECT_THAT(LinesOf({one, other, NodeOf("uav3")}),
+                ElementsAre("uav2.yaml:1: `uav2` is a member of the `agreement` in uav1.yaml, and has none "
+                            "itself: it does not vote"));
+}
+
 TEST(FleetCheck, DomainsThatDoNotHearEachOtherAreTold)
 {
     GatewayConfig lost = NodeOf("uav3");

@@ -16,6 +16,7 @@
 
 namespace Rabit
 {
+class AgreementHub;
 class FleetMember;
 class GatewayTap;
 
@@ -187,6 +188,20 @@ struct FetchSettings
     int Line = 0;
 };
 
+// The nodes that agree among themselves: on claims, which one of them has at a time (Claims), and on a table
+// (SharedTable). All of them need the same members and the same lease.
+struct AgreementRule
+{
+    std::vector<std::string> Members;  // names of nodes, 1 to 64, this one among them, in any order
+    // How long a claim outlives the last answer of a majority: four of the slowest beats at least, 60 s at
+    // most. The slowest beat is 500 ms, or with a budget RadioSettings::SlowestBeat.
+    std::chrono::milliseconds Lease{2000};
+    int Line = 0;
+};
+
+// Most members of an agreement.
+inline constexpr std::size_t MostAgreementMembers = 64;
+
 // Everything a gateway is told. Fill it in code, or load it with LoadGatewayConfig.
 struct GatewayConfig
 {
@@ -240,6 +255,10 @@ struct GatewayConfig
     std::optional<RecordSettings> Record{};
     // Set: other nodes may fetch files of this one.
     std::optional<FetchSettings> Fetch{};
+    // Set: this node agrees with others.
+    std::optional<AgreementRule> Agreement{};
+    // Shared by the Claims, the SharedTables and the gateway of this configuration; they make it.
+    std::shared_ptr<AgreementHub> Agreed{};
     // Observes queue messages and clocks; may be null. Only in code.
     std::shared_ptr<GatewayTap> Tap{};
 
@@ -253,7 +272,7 @@ struct GatewayConfig
     bool Reports = true;
 
     // For error messages: the file of the configuration, and the lines of its top-level keys and of the keys
-    // in `security`, `radio`, `record` and `fetch` (`radio.budget`). Empty: made in code.
+    // in `security`, `radio`, `record`, `fetch` and `agreement` (`radio.budget`). Empty: made in code.
     std::string File;
     std::map<std::string, int> Lines;
 };

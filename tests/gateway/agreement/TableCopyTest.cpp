@@ -1,4 +1,4 @@
-#include "agreement/SharedTable.h"
+#include "agreement/TableCopy.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ namespace
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-using TableAnswer = SharedTable::Answer;
+using TableAnswer = TableCopy::Answer;
 
 TableEntry WrittenEntry(const std::string &key, std::uint64_t count, const std::string &writer,
                         const std::string &value)
@@ -73,13 +73,13 @@ TableEntry SomeTableEntry(Sim::SimRandom &random)
 }
 
 // The count and the writer of a key that was written.
-std::pair<std::uint64_t, std::string> VersionOf(const SharedTable &table, const std::string &key)
+std::pair<std::uint64_t, std::string> VersionOf(const TableCopy &table, const std::string &key)
 {
     const auto &written = std::get<LastWritten>(*table.Find(key));
     return {written.Count, written.Writer};
 }
 
-std::string ValueOf(const SharedTable &table, const std::string &key)
+std::string ValueOf(const TableCopy &table, const std::string &key)
 {
     return std::get<LastWritten>(*table.Find(key)).Value;
 }
@@ -110,12 +110,12 @@ TEST(TableMerges, GiveTheSameTableInWhateverOrderAndHoweverOften)
         {
             entries.push_back(SomeTableEntry(random));
         }
-        SharedTable one("one", 1);
+        TableCopy one("one", 1);
         for (const TableEntry &entry : entries)
         {
             one.Meet(entry);
         }
-        SharedTable other("other", 2);
+        TableCopy other("other", 2);
         for (int i = 0; i < 20; ++i)
         {
             other.Meet(entries[random.Index(entries.size())]);
@@ -129,59 +129,59 @@ TEST(TableMerges, GiveTheSameTableInWhateverOrderAndHoweverOften)
     }
 }
 
-TEST(SharedTables, KeepTheWriteWithTheHigherCount)
+TEST(TableCopies, KeepTheWriteWithTheHigherCount)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     table.Meet(WrittenEntry("key", 7, "uav2", "new"));
     table.Meet(WrittenEntry("key", 6, "uav3", "old"));
     EXPECT_EQ(ValueOf(table, "key"), "new");
 }
 
-TEST(SharedTables, StartACountAtTheWholeIncarnation)
+TEST(TableCopies, StartACountAtTheWholeIncarnation)
 {
-    SharedTable table("uav1", 0xfedcba9876543210);
+    TableCopy table("uav1", 0xfedcba9876543210);
     ASSERT_EQ(table.Write("key", "value"), TableAnswer::Done);
     EXPECT_EQ(VersionOf(table, "key").first, 0xfedcba9876543210U);
 }
 
-TEST(SharedTables, WriteWithACountAboveAllThatTheyMet)
+TEST(TableCopies, WriteWithACountAboveAllThatTheyMet)
 {
-    SharedTable table("uav1", 5);
+    TableCopy table("uav1", 5);
     table.Meet(WrittenEntry("key", 9, "uav2", "theirs"));
     ASSERT_EQ(table.Write("key", "own"), TableAnswer::Done);
     EXPECT_EQ(VersionOf(table, "key"), std::pair(std::uint64_t{10}, std::string("uav1")));
 }
 
-TEST(SharedTables, StayAsTheyAreIfTheValueOfAKeyIsWrittenAgain)
+TEST(TableCopies, StayAsTheyAreIfTheValueOfAKeyIsWrittenAgain)
 {
-    SharedTable table("uav1", 5);
+    TableCopy table("uav1", 5);
     table.Write("key", "value");
     const std::uint64_t digest = table.Digest();
     EXPECT_EQ(table.Write("key", "value"), TableAnswer::Done);
     EXPECT_EQ(table.Digest(), digest);
 }
 
-TEST(SharedTables, HaveAllNumbersThatWereAddedToASet)
+TEST(TableCopies, HaveAllNumbersThatWereAddedToASet)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     ASSERT_EQ(table.Add("flown", 0), TableAnswer::Done);
     ASSERT_EQ(table.Add("flown", 511), TableAnswer::Done);
     table.Meet(UnionEntry("flown", {17}));
     EXPECT_EQ(*table.Find("flown"), UnionEntry("flown", {0, 17, 511}).Value);
 }
 
-TEST(SharedTables, HaveTheHighestNumber)
+TEST(TableCopies, HaveTheHighestNumber)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     ASSERT_EQ(table.Raise("round", -3), TableAnswer::Done);
     table.Meet(MaximumEntry("round", 2));
     ASSERT_EQ(table.Raise("round", 1), TableAnswer::Done);
     EXPECT_EQ(*table.Find("round"), MaximumEntry("round", 2).Value);
 }
 
-TEST(SharedTables, TellTheKeysThatHaveChangedOnce)
+TEST(TableCopies, TellTheKeysThatHaveChangedOnce)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     table.Raise("own", 1);
     table.Meet(MaximumEntry("met", 1));
     EXPECT_THAT(table.TakeChanged(), ElementsAre("met", "own"));
@@ -190,27 +190,27 @@ TEST(SharedTables, TellTheKeysThatHaveChangedOnce)
 }
 
 // A sum of the entries' hashes would often be the same.
-TEST(SharedTables, HaveAnotherDigestIfTwoKeysSwapTheirValues)
+TEST(TableCopies, HaveAnotherDigestIfTwoKeysSwapTheirValues)
 {
     for (char c = 'b'; c <= 'z'; ++c)
     {
         const std::string value(1, c);
-        SharedTable one("uav1", 1);
+        TableCopy one("uav1", 1);
         one.Write("cell 1", "a");
         one.Write("cell 2", value);
-        SharedTable other("uav1", 1);
+        TableCopy other("uav1", 1);
         other.Write("cell 1", value);
         other.Write("cell 2", "a");
         EXPECT_NE(one.Digest(), other.Digest()) << c;
     }
 }
 
-TEST(SharedTables, GiveAKeyThatHasTwoMergesToTheHigherOneAndCountTheLoss)
+TEST(TableCopies, GiveAKeyThatHasTwoMergesToTheHigherOneAndCountTheLoss)
 {
-    SharedTable lower("uav1", 1);
+    TableCopy lower("uav1", 1);
     lower.Write("key", "lost");
     lower.Meet(UnionEntry("key", {3}));
-    SharedTable higher("uav2", 1);
+    TableCopy higher("uav2", 1);
     higher.Add("key", 3);
     higher.Meet(WrittenEntry("key", 1, "uav1", "lost"));
     EXPECT_EQ(lower.Entries(), higher.Entries());
@@ -218,18 +218,18 @@ TEST(SharedTables, GiveAKeyThatHasTwoMergesToTheHigherOneAndCountTheLoss)
     EXPECT_EQ(higher.Conflicts().at("key"), 1U);
 }
 
-TEST(SharedTables, RefuseACallWithAnotherMerge)
+TEST(TableCopies, RefuseACallWithAnotherMerge)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     table.Write("key", "value");
     EXPECT_EQ(table.Raise("key", 1), TableAnswer::OtherMerge);
     EXPECT_EQ(ValueOf(table, "key"), "value");
     EXPECT_EQ(table.Refused(), 1U);
 }
 
-TEST(SharedTables, WriteAgainAboveAWriteOfAFormerIncarnation)
+TEST(TableCopies, WriteAgainAboveAWriteOfAFormerIncarnation)
 {
-    SharedTable table("uav1", 3);
+    TableCopy table("uav1", 3);
     table.Write("key", "new");
     table.Meet(WrittenEntry("key", 8, "uav1", "former"));
     EXPECT_EQ(ValueOf(table, "key"), "new");
@@ -237,25 +237,25 @@ TEST(SharedTables, WriteAgainAboveAWriteOfAFormerIncarnation)
     EXPECT_EQ(table.Rewritten(), 1U);
 }
 
-TEST(SharedTables, WriteAgainAboveAWriteOfAFormerIncarnationWithTheSameCount)
+TEST(TableCopies, WriteAgainAboveAWriteOfAFormerIncarnationWithTheSameCount)
 {
-    SharedTable table("uav1", 3);
+    TableCopy table("uav1", 3);
     table.Write("key", "a");
     table.Meet(WrittenEntry("key", 3, "uav1", "b"));
     EXPECT_EQ(ValueOf(table, "key"), "a");
 }
 
-TEST(SharedTables, TakeTheWriteOfAFormerIncarnationIfThisOneHasNotWritten)
+TEST(TableCopies, TakeTheWriteOfAFormerIncarnationIfThisOneHasNotWritten)
 {
-    SharedTable table("uav1", 3);
+    TableCopy table("uav1", 3);
     table.Meet(WrittenEntry("key", 8, "uav1", "former"));
     EXPECT_EQ(ValueOf(table, "key"), "former");
 }
 
 // Another node has written after this incarnation, and knew its value.
-TEST(SharedTables, KeepALaterWriteOfAnotherNodeOverThatOfAFormerIncarnation)
+TEST(TableCopies, KeepALaterWriteOfAnotherNodeOverThatOfAFormerIncarnation)
 {
-    SharedTable table("uav1", 3);
+    TableCopy table("uav1", 3);
     table.Write("key", "new");
     table.Meet(WrittenEntry("key", 4, "uav2", "newer"));
     table.Meet(WrittenEntry("key", 8, "uav1", "former"));
@@ -263,10 +263,10 @@ TEST(SharedTables, KeepALaterWriteOfAnotherNodeOverThatOfAFormerIncarnation)
 }
 
 // Two live nodes have one name.
-TEST(SharedTables, StopWritingAgainIfTheirNameIsTaken)
+TEST(TableCopies, StopWritingAgainIfTheirNameIsTaken)
 {
-    SharedTable one("uav1", 3);
-    SharedTable other("uav1", 4);
+    TableCopy one("uav1", 3);
+    TableCopy other("uav1", 4);
     one.Write("key", "one");
     other.Write("key", "other");
     for (int i = 0; i < 100; ++i)
@@ -275,58 +275,58 @@ TEST(SharedTables, StopWritingAgainIfTheirNameIsTaken)
         other.Meet(one.Entries().front());
     }
     EXPECT_EQ(one.Entries(), other.Entries());
-    EXPECT_LE(one.Rewritten(), static_cast<std::uint64_t>(SharedTable::MostRewrites));
+    EXPECT_LE(one.Rewritten(), static_cast<std::uint64_t>(TableCopy::MostRewrites));
 }
 
-TEST(SharedTables, RefuseToWriteAboveTheHighestCount)
+TEST(TableCopies, RefuseToWriteAboveTheHighestCount)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     table.Meet(WrittenEntry("key", std::numeric_limits<std::uint64_t>::max(), "uav2", "theirs"));
     EXPECT_EQ(table.Write("key", "own"), TableAnswer::CountAtEnd);
     EXPECT_EQ(ValueOf(table, "key"), "theirs");
 }
 
-TEST(SharedTables, RefuseAnEmptyOrALongKey)
+TEST(TableCopies, RefuseAnEmptyOrALongKey)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     EXPECT_EQ(table.Write("", "value"), TableAnswer::BadKey);
     EXPECT_EQ(table.Write(std::string(65, 'k'), "value"), TableAnswer::BadKey);
     EXPECT_EQ(table.Write(std::string(64, 'k'), "value"), TableAnswer::Done);
     EXPECT_EQ(table.Refused(), 2U);
 }
 
-TEST(SharedTables, RefuseALongValue)
+TEST(TableCopies, RefuseALongValue)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     EXPECT_EQ(table.Write("key", std::string(65, 'v')), TableAnswer::BadValue);
     EXPECT_EQ(table.Write("key", std::string(64, 'v')), TableAnswer::Done);
 }
 
-TEST(SharedTables, RefuseANumberThatASetCannotHave)
+TEST(TableCopies, RefuseANumberThatASetCannotHave)
 {
-    SharedTable table("uav1", 1);
+    TableCopy table("uav1", 1);
     EXPECT_EQ(table.Add("key", 512), TableAnswer::BadValue);
     EXPECT_EQ(table.Find("key"), nullptr);
 }
 
-TEST(SharedTables, RefuseMoreKeysThanTheyHaveRoomFor)
+TEST(TableCopies, RefuseMoreKeysThanTheyHaveRoomFor)
 {
-    SharedTable table("uav1", 1);
-    for (std::size_t i = 0; i < SharedTable::MostKeys; ++i)
+    TableCopy table("uav1", 1);
+    for (std::size_t i = 0; i < TableCopy::MostKeys; ++i)
     {
         ASSERT_EQ(table.Raise("key " + std::to_string(i), 0), TableAnswer::Done);
     }
     EXPECT_EQ(table.Raise("one more", 0), TableAnswer::Full);
-    EXPECT_THAT(std::string(SharedTable::Reason(TableAnswer::Full)), HasSubstr("256 other keys"));
+    EXPECT_THAT(std::string(TableCopy::Reason(TableAnswer::Full)), HasSubstr("256 other keys"));
     EXPECT_EQ(table.Meet(MaximumEntry("one more", 0)), TableAnswer::Full);
     EXPECT_EQ(table.Refused(), 2U);
     EXPECT_EQ(table.Raise("key 7", 1), TableAnswer::Done);
 }
 
-TEST(SharedTables, NeedTheNameOfANode)
+TEST(TableCopies, NeedTheNameOfANode)
 {
-    EXPECT_THROW(SharedTable("", 1), std::invalid_argument);
-    EXPECT_THROW(SharedTable(std::string(65, 'n'), 1), std::invalid_argument);
+    EXPECT_THROW(TableCopy("", 1), std::invalid_argument);
+    EXPECT_THROW(TableCopy(std::string(65, 'n'), 1), std::invalid_argument);
 }
 
 TEST(TableMessages, AreReadAsTheyWereWritten)

@@ -22,7 +22,7 @@ namespace Rabit
 // that starts again has what the others tell it.
 //
 // A pure state machine. Not thread-safe.
-class SharedTable
+class TableCopy
 {
 public:
     static constexpr std::size_t MostKeys = 256;
@@ -47,7 +47,7 @@ public:
     using Pairs = std::map<std::uint64_t, std::uint64_t>;
 
     // The name of this node, at most 64 bytes; and another number for each start, which should rise.
-    SharedTable(std::string self, std::uint64_t incarnation);
+    TableCopy(std::string self, std::uint64_t incarnation);
 
     // Last writer: the key has this value from now on. Without effect if it has it already.
     Answer Write(const std::string &key, std::string value);

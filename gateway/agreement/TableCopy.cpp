@@ -1,4 +1,4 @@
-#include "agreement/SharedTable.h"
+#include "agreement/TableCopy.h"
 
 #include <rabit/base/Fnv1a.h>
 
@@ -31,12 +31,12 @@ std::uint64_t HashOfEntry(const TableEntry &entry)
 
 }  // namespace
 
-SharedTable::SharedTable(std::string self, std::uint64_t incarnation)
+TableCopy::TableCopy(std::string self, std::uint64_t incarnation)
     : _self(CheckedWriter(std::move(self))), _incarnation(incarnation)
 {
 }
 
-std::string_view SharedTable::Reason(Answer answer)
+std::string_view TableCopy::Reason(Answer answer)
 {
     switch (answer)
     {
@@ -56,7 +56,7 @@ std::string_view SharedTable::Reason(Answer answer)
     return "unknown";
 }
 
-SharedTable::Answer SharedTable::Write(const std::string &key, std::string value)
+TableCopy::Answer TableCopy::Write(const std::string &key, std::string value)
 {
     const auto known = _items.find(key);
     LastWritten written{.Count = _incarnation, .Writer = _self, .Value = std::move(value)};
@@ -88,7 +88,7 @@ SharedTable::Answer SharedTable::Write(const std::string &key, std::string value
     return answer;
 }
 
-SharedTable::Answer SharedTable::Add(const std::string &key, std::size_t number)
+TableCopy::Answer TableCopy::Add(const std::string &key, std::size_t number)
 {
     NumberSet numbers;
     if (number >= numbers.size())
@@ -102,7 +102,7 @@ SharedTable::Answer SharedTable::Add(const std::string &key, std::size_t number)
     return Merge(own, true);
 }
 
-SharedTable::Answer SharedTable::Raise(const std::string &key, std::int64_t number)
+TableCopy::Answer TableCopy::Raise(const std::string &key, std::int64_t number)
 {
     TableEntry own;
     own.Key = key;
@@ -110,13 +110,13 @@ SharedTable::Answer SharedTable::Raise(const std::string &key, std::int64_t numb
     return Merge(own, true);
 }
 
-const TableValue *SharedTable::Find(std::string_view key) const
+const TableValue *TableCopy::Find(std::string_view key) const
 {
     const auto known = _items.find(key);
     return known == _items.end() ? nullptr : &known->second.Entry.Value;
 }
 
-std::vector<TableEntry> SharedTable::Entries() const
+std::vector<TableEntry> TableCopy::Entries() const
 {
     std::vector<TableEntry> entries;
     for (const auto &[key, item] : _items)
@@ -126,7 +126,7 @@ std::vector<TableEntry> SharedTable::Entries() const
     return entries;
 }
 
-std::vector<TableEntry> SharedTable::EntriesOf(std::uint64_t keyHash) const
+std::vector<TableEntry> TableCopy::EntriesOf(std::uint64_t keyHash) const
 {
     std::vector<TableEntry> entries;
     for (const auto &[key, item] : _items)
@@ -139,13 +139,13 @@ std::vector<TableEntry> SharedTable::EntriesOf(std::uint64_t keyHash) const
     return entries;
 }
 
-SharedTable::Answer SharedTable::Refuse(Answer reason)
+TableCopy::Answer TableCopy::Refuse(Answer reason)
 {
     ++_refused;
     return reason;
 }
 
-SharedTable::Answer SharedTable::Merge(const TableEntry &entry, bool isOwn)
+TableCopy::Answer TableCopy::Merge(const TableEntry &entry, bool isOwn)
 {
     if (!HasGoodKey(entry) || !HasGoodValue(entry))
     {
@@ -175,7 +175,7 @@ SharedTable::Answer SharedTable::Merge(const TableEntry &entry, bool isOwn)
     return Answer::Done;
 }
 
-SharedTable::Answer SharedTable::Insert(const TableEntry &entry)
+TableCopy::Answer TableCopy::Insert(const TableEntry &entry)
 {
     if (_items.size() >= MostKeys)
     {
@@ -188,7 +188,7 @@ SharedTable::Answer SharedTable::Insert(const TableEntry &entry)
     return Answer::Done;
 }
 
-void SharedTable::Change(Item &item, TableValue value)
+void TableCopy::Change(Item &item, TableValue value)
 {
     item.Entry.Value = std::move(value);
     const std::uint64_t hash = HashOfEntry(item.Entry);
@@ -207,7 +207,7 @@ void SharedTable::Change(Item &item, TableValue value)
 // higher, or if incarnations fell. All that this incarnation writes is in its own table, so what it does not
 // know is not from itself. Its value goes above that, as a router of OSPF does with advertisements of its
 // own.
-bool SharedTable::OutbidFormerIncarnation(Item &item, TableValue &merged)
+bool TableCopy::OutbidFormerIncarnation(Item &item, TableValue &merged)
 {
     auto *written = std::get_if<LastWritten>(&merged);
     const auto *before = std::get_if<LastWritten>(&item.Entry.Value);
