@@ -35,8 +35,8 @@
 namespace Rabit
 {
 
-// Drives the agreement of a gateway: passes beats and frames to the state machines of ../agreement, which the
-// program's threads reach through the hub, sends what they send, and stores fences.
+// Drives the agreement of a gateway: passes beats and frames to the state machines of ../agreement, sends
+// what they send, and stores fences. The program's threads reach the state machines through the hub.
 //
 // Threads: OnFrame is called on the transport's threads; all else is for the gateway's thread.
 class AgreementDriver

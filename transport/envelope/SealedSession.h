@@ -71,7 +71,7 @@ public:
     std::span<std::uint8_t> Open(std::span<std::uint8_t> datagram, const Rtps::Place &from, TimePoint now);
 
     // Where Calls::Send should also send, for nodes that do not hear the group and that the vendor may not
-    // know: the places that they have announced, or, with port 0, hosts of which nothing else is known.
+    // know. These are the places that they have announced. Port 0: a host of which nothing else is known.
     std::vector<Rtps::Place> Strangers(TimePoint now) const;
 
     // The name in the certificate of the proven session that speaks by this GUID prefix. Empty: there is none

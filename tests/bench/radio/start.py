@@ -3,8 +3,8 @@
 
 Usage: start.py [--nodes N] [--kbit RATE]... [--loss PERCENT] [--tries N] [--transports NAME,...] [--levels NAME,...]
                 [--limit SECONDS] PROGRAMS
-The levels are `none` and `keys`. PROGRAMS is the folder of the programs (build/release/bin). Each node publishes a tick a second, which all others follow. Exit
-code 77: this machine does not allow it."""
+`--levels` has `none`, `keys` or both: nodes without keys and with them. PROGRAMS is the folder of the programs (build/release/bin).
+Each node publishes a tick a second, which all others follow. Exit code 77: this machine does not allow it."""
 
 import argparse
 import pathlib

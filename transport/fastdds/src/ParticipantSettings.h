@@ -21,7 +21,7 @@ rtps::RTPSParticipantAttributes MakeParticipantAttributes(const TransportSetting
                                                           GuardedUdpDescriptor::Settings udp);
 
 // Throws TransportError if the profiles file, if any, cannot be read, is refused by the vendor or configures
-// DDS Security, and if with a member of a fleet with keys some datagrams would not be sealed.
+// DDS Security. With a member of a fleet with keys it also throws if some datagrams would not be sealed.
 void CheckConfig(const TransportSettings &settings);
 
 // True if the profiles file, if any, defines transports. Throws TransportError if the vendor refuses the

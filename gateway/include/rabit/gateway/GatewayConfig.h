@@ -88,7 +88,8 @@ struct RadioSettings
     std::optional<double> Budget{};
     // Longest time between beats with a budget, 500 ms to 60 s. Beats take a twentieth of the budget, but
     // come no more often than every 500 ms. The node is STALE after three times the time between its beats,
-    // LOST after seven times. Without a budget a beat is sent every 500 ms.
+    // LOST after seven times, unless the other node has a LostAfter. Without a budget a beat is sent every
+    // 500 ms.
     std::chrono::milliseconds SlowestBeat{2000};
 };
 
