@@ -32,7 +32,8 @@ class Node:
     def events(self):
         """(CLOCK_MONOTONIC in ns, text) of each line."""
         lines = self.ledger.read_text(encoding="utf-8").split("\n")[:-1]
-        return [(int(when), text) for when, _, text in (line.partition(" ") for line in lines)]
+        # A life begins with an empty line.
+        return [(int(when), text) for when, _, text in (line.partition(" ") for line in lines if line)]
 
     def lines(self):
         return [text for _, text in self.events()]
