@@ -6,6 +6,7 @@
 #include <rabit/transport/Transport.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -20,6 +21,8 @@ namespace
 {
 
 constexpr double LargestBudget = 1e9;
+// Between the beats of a path without a budget. With one, `slowest_beat` is not less.
+constexpr std::chrono::milliseconds UsualBeat{500};
 
 class Validator : ConfigCheck
 {
@@ -122,7 +125,7 @@ private:
 
     void CheckRadio(const RadioSettings &radio, const std::string &place) const
     {
-        if (radio.SlowestBeat < std::chrono::milliseconds(500) || radio.SlowestBeat > std::chrono::minutes(1))
+        if (radio.SlowestBeat < UsualBeat || radio.SlowestBeat > std::chrono::minutes(1))
         {
             Fail(LineOf(place + "radio.slowest_beat"),
                  "`slowest_beat` is out of range; expected 500ms to 60s");
@@ -141,19 +144,23 @@ private:
         }
     }
 
+    // The times between the slowest beats of the paths: the shortest, and the longest.
+    std::pair<std::chrono::milliseconds, std::chrono::milliseconds> SlowestBeats() const
+    {
+        std::vector<std::chrono::milliseconds> beats;
+        for (const GatewayConfig &path : PathConfigsOf(_config))
+        {
+            beats.push_back(path.Radio.Budget ? path.Radio.SlowestBeat : UsualBeat);
+        }
+        const auto [least, most] = std::ranges::minmax(beats);
+        return {least, most};
+    }
+
     // On the path with the most frequent beats, a node must be able to beat three times within that time.
     void CheckLostAfter() const
     {
         constexpr int beatsOfStale = 3;
-        constexpr std::chrono::milliseconds usualBeat{500};
-        const auto slowest = [usualBeat](const RadioSettings &radio)
-        { return radio.Budget ? std::max(radio.SlowestBeat, usualBeat) : usualBeat; };
-        std::chrono::milliseconds beat = slowest(_config.Radio);
-        for (std::size_t i = 0; i < _config.Paths.size(); ++i)
-        {
-            const std::chrono::milliseconds ofPath = slowest(_config.Paths[i].Radio);
-            beat = i == 0 ? ofPath : std::min(beat, ofPath);
-        }
+        const std::chrono::milliseconds beat = SlowestBeats().first;
         if (_config.LostAfter &&
             (*_config.LostAfter < beatsOfStale * beat || *_config.LostAfter > std::chrono::hours(1)))
         {
@@ -236,12 +243,7 @@ private:
     void CheckLeaseOfAgreement() const
     {
         constexpr std::chrono::milliseconds longest = std::chrono::minutes(1);
-        std::chrono::milliseconds least{0};
-        for (const GatewayConfig &path : PathConfigsOf(_config))
-        {
-            const auto slowest = path.Radio.Budget ? path.Radio.SlowestBeat : std::chrono::milliseconds(500);
-            least = std::max(least, 4 * slowest);
-        }
+        const std::chrono::milliseconds least = 4 * SlowestBeats().second;
         if (_config.Agreement->Lease < least || _config.Agreement->Lease > longest)
         {
             Fail(std::max(LineOf("agreement.lease"), _config.Agreement->Line),
