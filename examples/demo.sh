@@ -331,7 +331,7 @@ on_interrupt() {
     interrupts=$((interrupts + 1))
     [ -n "$ground_pid" ] || exit 130
     if [ "$interrupts" -eq 1 ]; then
-        kill -INT "$ground_pid" 2>/dev/null
+        kill -TERM "$ground_pid" 2>/dev/null
     else
         kill -KILL "$ground_pid" 2>/dev/null
     fi
