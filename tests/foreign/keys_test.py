@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Plain programs of each vendor beside two nodes with keys that use the same topics, types and QoS: the programs hear nothing of
-the nodes and are not heard, and each node says that a program without keys is there. Beside the same nodes without keys they
-hear, and are heard.
+the nodes and are not heard, and each node says that a program without keys is there. Beside one such node without keys they
+hear, and are heard. One, since two share a group of multicast: an assertion of Fast DDS 2.9 ends a program that then sends to
+the address of one of them (OutputTrafficManager.hpp:87, fixed in 2025 by its change 5704).
 
 Usage: keys_test.py NODE RABIT TRANSPORT,... PLAIN_PROGRAM...
 Skipped (exit code 77) where no network namespace can be made."""
@@ -37,10 +38,11 @@ class Case:
     def __init__(self, programs, transports, plain, domain, secured):
         self.node, self.rabit = programs
         self.transports, self.plain, self.domain, self.secured = transports, plain, domain, secured
+        self.names = NODES if secured else NODES[:1]
         self.failure = None
 
     def __str__(self):
-        return f"{pathlib.Path(self.plain).name} beside nodes {'with' if self.secured else 'without'} keys"
+        return f"{pathlib.Path(self.plain).name} beside {'nodes with' if self.secured else 'a node without'} keys"
 
     def run(self):
         try:
@@ -54,7 +56,7 @@ class Case:
         if self.secured:
             field.run(self.rabit, "keys", "init", fleet_keys.of(folder))
         files = []
-        for name, transport in zip(NODES, self.transports):
+        for name, transport in zip(self.names, self.transports):
             files.append(folder / f"{name}.yaml")
             files[-1].write_text(CONFIG.format(node=name, domain=self.domain, transport=transport), encoding="utf-8")
             if self.secured:
