@@ -36,9 +36,9 @@ namespace Rabit
 // - The limit is the lower one of `radio: budget` and the capacity estimated from the peers' reports of late
 //   datagrams (CapacityEstimate).
 // - Streams are: the beats (class presence); for each node, acknowledgements and hellos (class command); the
-//   exchange of cards (class state, before other states); the texts of types that are asked for (class bulk);
-//   each link; each published message; each foreign topic that is written (class foreign). A datagram is made
-//   when its turn has come, from the newest data.
+//   cards and introductions of discovery (class state, before other states); the texts of types that are
+//   asked for (class bulk); each link; each published message; each foreign topic that is written (class
+//   foreign). A datagram is made when its turn has come, from the newest data.
 // - Each datagram is paid for with the bytes that the transport counted for it. DDS's own traffic is paid
 //   for, too, and a part of a budget is kept free for it when it is due.
 // - With a budget, streams that are ready ride in the datagram of the chosen one (AirSchedule::NextRider), as
@@ -58,8 +58,9 @@ public:
                std::deque<TopicPublisher> &publishers, std::deque<ForeignPublisher> *foreign,
                TypeExchange &types, const PathChoice &choice, std::size_t path);
 
-    // From now on the session's exchange of cards waits for Serve. To be called as soon as the session
-    // exists. `wakeUp`: called, on any thread, when Serve is to be called before the time that it returned.
+    // From now on the session's discovery (DiscoveryTurns) waits for Serve. To be called as soon as the
+    // session exists. `wakeUp`: called, on any thread, when Serve is to be called before the time that it
+    // returned.
     void TakeTurns(TransportSession &session, std::function<void()> wakeUp);
     // Call once all publishers exist. The session is kept until Close.
     void Open(TransportSession &session);

@@ -68,7 +68,8 @@ protected:
 TEST_F(KeyedFleetTest, AllMeetAndACommandIsDelivered)
 {
     ASSERT_TRUE(fleet.RunUntil([this] { return AreAllUp(); }, 10s));
-    EXPECT_TRUE(SendGoto(fleet["ground"], "uav3"));
+    // Until uav3's announcement has come.
+    EXPECT_TRUE(fleet.RunUntil([this] { return SendGoto(fleet["ground"], "uav3"); }, 2s));
     EXPECT_TRUE(fleet.RunUntil(
         [this] { return fleet["ground"].LinkTo("uav3", "MissionControl").delivered == 1; }, 5s));
     EXPECT_EQ(WaitingAt("uav3"), 1);

@@ -93,6 +93,10 @@ MUTATIONS = [
     # Blobs
     rule("a liar keeps a blob back", "BlobExchange.cpp", "now - lack.Since > turns * lack.Turn", "false"),
     rule("others postpone an offer for ever", "BlobExchange.cpp", "std::min(others, offered->second.Latest)", "others"),
+    # Pace of introductions
+    rule("each node has the pace of all", "SharedPace.h", "AllTogether / nodes,", "AllTogether,", "SharedPaces.*"),
+    rule("recordings of many nodes end all introductions", "SharedPace.h", "_others.size() < MostOthers ||", "true ||", "SharedPaces.*"),
+    rule("a node counts for ever", "SharedPace.h", "now - each.second > Counts", "false", "SharedPaces.*"),
     # Sessions
     rule("a prefix may have two speakers", "SessionTable.cpp",
          "if (const std::string *const holder = HolderOf(facts))",

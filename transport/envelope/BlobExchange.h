@@ -57,8 +57,9 @@ public:
     static constexpr std::chrono::milliseconds OfferSpread{200};
     // Others postpone an offer by at most this time.
     static constexpr std::chrono::seconds LongestPostponed{2};
-    // A source that has sent nothing for this time is replaced by another one that has the blob.
-    static constexpr std::chrono::seconds SourcePatience{1};
+    // A source that has sent nothing for this time is replaced by another one that has the blob. At the
+    // slowest, a part and a claim take 1.9 s (SharedPace::LeastOfOne).
+    static constexpr std::chrono::seconds SourcePatience{3};
     // So is a certificate that had its turn and did not bring the whole, by another certificate. The next one
     // has twice the time: the largest blob takes 14 s. One that was replaced waits twice as long for its next
     // turn. So a member that sends wrong parts, or sends them slowly, keeps a blob back for seconds alone.
@@ -119,6 +120,8 @@ public:
         Epoch In = 0;
         std::vector<std::uint8_t> Message{};  // an RTPS message, to be sealed for all in the class Bulletin
     };
+    // Bytes of the message that TakeDue would return now, without up to three of padding; 0: none is due.
+    std::size_t DueBytes(TimePoint now);
     // Takes a message that is due; empty: none is.
     std::optional<Outgoing> TakeDue(TimePoint now);
 
@@ -177,6 +180,14 @@ private:
     void Take(const BlobRequest &request, const Source &from, bool isProven, TimePoint now);
     void WantPart(BlobKind kind, std::size_t index, Epoch in, TimePoint now);
     void MakeOffers(TimePoint now);
+    struct DuePart
+    {
+        OwnPart *Of = nullptr;  // null: none is due
+        BlobPart Content{};
+    };
+    DuePart NextPart(TimePoint now);
+    std::optional<Epoch> RequestsIn(TimePoint now);
+    static bool IsRequested(const Lack &lack, Epoch in, TimePoint now);
     std::optional<Outgoing> TakePart(TimePoint now);
     std::optional<Outgoing> TakeRequests(TimePoint now);
 

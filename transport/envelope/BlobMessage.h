@@ -44,8 +44,11 @@ constexpr std::size_t BlobPartSize = 1100;
 constexpr std::size_t MostBlobParts = 64;
 constexpr std::size_t LargestBlob = MostBlobParts * BlobPartSize;  // the largest bulletin has 69,735 bytes
 constexpr std::size_t MostBlobRequests = 16;
-// Bytes of a message with one part and no request, without the part.
-constexpr std::size_t BlobPartFront = Rtps::RtpsHeaderSize + Rtps::SubmessageHeaderSize + 44;
+// Bytes of a message with neither a request nor a part; of each request; and of a message with one part and
+// no request, without the part.
+constexpr std::size_t BlobFront = Rtps::RtpsHeaderSize + Rtps::SubmessageHeaderSize + 4;
+constexpr std::size_t BlobRequestSize = 44;
+constexpr std::size_t BlobPartFront = BlobFront + 40;
 
 constexpr std::size_t BlobPartsOf(std::size_t size)
 {

@@ -15,7 +15,6 @@ namespace
 {
 
 constexpr std::uint8_t ClaimFormat = 1;
-constexpr std::size_t FixedClaimSize = 11;
 
 template <typename Field>
 void TakeFields(std::span<const std::uint8_t> &rest, std::size_t count, std::vector<Field> &to)
@@ -32,7 +31,7 @@ void TakeFields(std::span<const std::uint8_t> &rest, std::size_t count, std::vec
 
 std::optional<Claim> ReadClaim(std::span<const std::uint8_t> bytes)
 {
-    if (bytes.size() < FixedClaimSize || bytes[0] != ClaimFormat)
+    if (bytes.size() < Claim::FixedSize || bytes[0] != ClaimFormat)
     {
         return std::nullopt;
     }
@@ -42,15 +41,15 @@ std::optional<Claim> ReadClaim(std::span<const std::uint8_t> bytes)
     {
         return std::nullopt;
     }
-    const std::size_t fixed = FixedClaimSize + headers * sizeof(RtpsHeader) + answers * sizeof(Nonce);
-    if (bytes.size() < fixed + 1 || bytes.size() != fixed + 1 + bytes[fixed] ||
-        bytes[fixed] > LargestCertificate)
+    const std::size_t least = Claim::SizeWith(headers, answers, 0);
+    if (bytes.size() < least || bytes.size() != least + bytes[least - 1] ||
+        bytes[least - 1] > LargestCertificate)
     {
         return std::nullopt;
     }
     Claim claim;
     std::copy_n(bytes.begin() + 3, claim.Challenge.size(), claim.Challenge.begin());
-    auto rest = bytes.subspan(FixedClaimSize);
+    auto rest = bytes.subspan(Claim::FixedSize);
     TakeFields(rest, headers, claim.Headers);
     TakeFields(rest, answers, claim.Answers);
     claim.Certificate = rest.subspan(1);

@@ -27,6 +27,12 @@ struct Claim
 {
     static constexpr std::size_t MostHeaders = 4;
     static constexpr std::size_t MostAnswers = 64;
+    static constexpr std::size_t FixedSize = 11;  // in front of the RTPS headers
+    // Bytes of a claim with so many headers and answers, and a certificate of that size.
+    static constexpr std::size_t SizeWith(std::size_t headers, std::size_t answers, std::size_t certificate)
+    {
+        return FixedSize + headers * sizeof(RtpsHeader) + answers * sizeof(Nonce) + 1 + certificate;
+    }
 
     Nonce Challenge{};
     std::vector<RtpsHeader> Headers{};

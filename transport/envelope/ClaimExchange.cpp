@@ -179,10 +179,13 @@ TimePoint ClaimExchange::AnsweredBy(const Series &series) const
     return _askedIn.second + std::min(answers, LongestAnswers);
 }
 
-// Makes the questions wait that are due. A claim asks in one epoch, so several claims may follow.
+// Makes the questions wait that are due. A claim asks in one epoch, so several claims may follow. Until they
+// have gone, the time for an answer does not begin.
 void ClaimExchange::Fire(Series &series, TimePoint now)
 {
-    if (!IsBy(DueOf(series), now))
+    const bool isWaiting = std::any_of(series.Questions.begin(), series.Questions.end(),
+                                       [](const auto &each) { return each.second.IsWaiting; });
+    if (isWaiting || !IsBy(DueOf(series), now))
     {
         return;
     }
@@ -226,7 +229,16 @@ std::optional<Epoch> ClaimExchange::NextEpoch(Epoch newest, TimePoint now) const
     return _initial.IsDue(now) ? std::optional(newest) : std::nullopt;
 }
 
-std::optional<ClaimExchange::Outgoing> ClaimExchange::TakeDue(Epoch newest, TimePoint now)
+// True if a claim in that epoch asks the session. Each claim asks all that have to be asked in its epoch and
+// were not just now. `isAsking`: the claim asks another session already.
+bool ClaimExchange::IsAsked(const Question &question, Epoch in, bool isAsking, TimePoint now)
+{
+    return question.In == in && question.Left > 0 &&
+           (question.IsWaiting || isAsking ||
+            (now - question.Heard <= Patience && now - question.AskedAt >= FirstRetry));
+}
+
+std::optional<ClaimExchange::Expected> ClaimExchange::Next(Epoch newest, TimePoint now)
 {
     for (Series &series : _series)
     {
@@ -237,23 +249,53 @@ std::optional<ClaimExchange::Outgoing> ClaimExchange::TakeDue(Epoch newest, Time
     {
         return std::nullopt;
     }
-    Outgoing claim{.In = *in};
-    if (*in == newest && _initial.IsDue(now))
+    bool isAsking = *in == newest && _initial.IsDue(now);
+    Expected next{.In = *in};
+    next.WithCertificate = isAsking || (_certificate && _certificate->first == *in);
+    for (const Series &series : _series)
+    {
+        for (const auto &[session, question] : series.Questions)
+        {
+            if (IsAsked(question, *in, isAsking, now))
+            {
+                isAsking = true;
+                next.WithCertificate |= question.Of != Standing::Proven;
+            }
+        }
+    }
+    for (const auto &[session, answer] : _pending)
+    {
+        if (answer.In == *in)
+        {
+            ++next.Answers;
+            next.WithCertificate |= answer.By != Standing::Proven;
+        }
+    }
+    return next;
+}
+
+std::optional<ClaimExchange::Outgoing> ClaimExchange::TakeDue(Epoch newest, TimePoint now)
+{
+    const auto next = Next(newest, now);
+    if (!next)
+    {
+        return std::nullopt;
+    }
+    Outgoing claim{.In = next->In, .WithCertificate = next->WithCertificate};
+    if (claim.In == newest && _initial.IsDue(now))
     {
         claim.Challenge = CurrentNonce(now);
-        claim.WithCertificate = true;
         _initial.Done(now);
     }
-    if (_certificate && _certificate->first == *in)
+    if (_certificate && _certificate->first == claim.In)
     {
-        claim.WithCertificate = true;
         _certificate.reset();
     }
     TakeQuestions(claim, now);
     TakeAnswers(claim, now);
     if (claim.Challenge != Nonce{})
     {
-        _askedIn = {*in, now};
+        _askedIn = {claim.In, now};
     }
     if (claim.WithCertificate)
     {
@@ -262,20 +304,15 @@ std::optional<ClaimExchange::Outgoing> ClaimExchange::TakeDue(Epoch newest, Time
     return claim;
 }
 
-// Whatever the claim goes out for, it asks all that have to be asked in its epoch and were not just now.
 void ClaimExchange::TakeQuestions(Outgoing &claim, TimePoint now)
 {
     for (Series &series : _series)
     {
         for (auto &[session, question] : series.Questions)
         {
-            const bool isAsked = question.In == claim.In && question.Left > 0 &&
-                                 (question.IsWaiting || claim.Challenge != Nonce{} ||
-                                  (now - question.Heard <= Patience && now - question.AskedAt >= FirstRetry));
-            if (isAsked)
+            if (IsAsked(question, claim.In, claim.Challenge != Nonce{}, now))
             {
                 claim.Challenge = CurrentNonce(now);
-                claim.WithCertificate |= question.Of != Standing::Proven;
                 question.AskedAt = now;
                 question.IsWaiting = false;
                 question.Left -= question.Of == Standing::Unknown ? 1 : 0;
@@ -312,7 +349,6 @@ void ClaimExchange::TakeAnswers(Outgoing &claim, TimePoint now)
     {
         return;
     }
-    claim.WithCertificate = true;
     if (now - _unprovenAt >= Quiet)
     {
         _unprovenGap.Reset();

@@ -107,6 +107,14 @@ public:
         std::vector<Nonce> Answers{};
         bool WithCertificate = false;
     };
+    // The claim that TakeDue would return now; empty: none is due.
+    struct Expected
+    {
+        Epoch In = 0;
+        std::size_t Answers = 0;
+        bool WithCertificate = false;
+    };
+    std::optional<Expected> Next(Epoch newest, TimePoint now);
     // Takes a claim that is due; empty: none is. `newest`: the epoch in which this session sends.
     std::optional<Outgoing> TakeDue(Epoch newest, TimePoint now);
 
@@ -156,6 +164,7 @@ private:
     TimePoint AnsweredBy(const Series &series) const;
     void Fire(Series &series, TimePoint now);
     std::optional<Epoch> NextEpoch(Epoch newest, TimePoint now) const;
+    static bool IsAsked(const Question &question, Epoch in, bool isAsking, TimePoint now);
     void TakeQuestions(Outgoing &claim, TimePoint now);
     void TakeAnswers(Outgoing &claim, TimePoint now);
     Nonce CurrentNonce(TimePoint now);

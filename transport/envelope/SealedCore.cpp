@@ -123,16 +123,12 @@ std::span<std::uint8_t> SealedCore::Open(std::span<std::uint8_t> datagram, const
         _blobs.Offer(outer.Epoch, now);
         _isNew = true;
     }
-    if (result.Verdict)
+    if (result.Verdict || result.Class == OuterClass::Bulletin)
     {
+        _pace.Heard(sender.Certificate().Content.Number, now);
         Await(outer.Tag, from, now);
-        TakeClaim(result, outer, datagram.size(), now);
-        return {};
-    }
-    if (result.Class == OuterClass::Bulletin)
-    {
-        Await(outer.Tag, from, now);
-        TakeBlobs(result.Message, sender, outer, datagram.size(), now);
+        result.Verdict ? TakeClaim(result, outer, datagram.size(), now)
+                       : TakeBlobs(result.Message, sender, outer, datagram.size(), now);
         return {};
     }
     Listen(sender, outer.Tag, now);
@@ -297,18 +293,20 @@ std::vector<std::string> SealedCore::TakeLogs()
     return std::exchange(_logs, {});
 }
 
-std::optional<TimePoint> SealedCore::Due() const
+std::optional<TimePoint> SealedCore::LocalDue() const
 {
     const std::lock_guard lock(_mutex);
-    if (!_arrived.empty() || !_logs.empty())
-    {
-        return TimePoint{};
-    }
-    const auto due = Earliest({_claims.Due(), _blobs.Due()});
-    return due ? std::optional(std::max(*due, _budget.Free())) : std::nullopt;
+    return _arrived.empty() && _logs.empty() ? std::nullopt : std::optional(TimePoint{});
 }
 
-std::optional<std::vector<std::uint8_t>> SealedCore::TakeDue(TimePoint now)
+std::optional<TimePoint> SealedCore::NetworkDue() const
+{
+    const std::lock_guard lock(_mutex);
+    const auto due = Earliest({_claims.Due(), _blobs.Due()});
+    return due ? std::optional(std::max(*due, _pace.Free())) : std::nullopt;
+}
+
+void SealedCore::Learn()
 {
     std::vector<std::vector<std::uint8_t>> arrived;
     {
@@ -329,18 +327,48 @@ std::optional<std::vector<std::uint8_t>> SealedCore::TakeDue(TimePoint now)
         }
     }
     FollowEpochs();
-    return _budget.IsFree(now) ? TakeOwn(now) : std::nullopt;
 }
 
-// Takes a claim, or else a message of blobs.
-std::optional<std::vector<std::uint8_t>> SealedCore::TakeOwn(TimePoint now)
+std::size_t SealedCore::DueBytes(TimePoint now)
 {
-    const auto claim = _claims.TakeDue(_epochs.Newest(), now);
-    auto blob = claim ? std::nullopt : _blobs.TakeDue(now);
-    if (!claim && !blob)
+    const std::lock_guard lock(_mutex);
+    FollowEpochs();
+    if (!_pace.IsFree(now))
+    {
+        return 0;
+    }
+    const auto claim = _claims.Next(_epochs.Newest(), now);
+    const std::size_t blob = _blobs.DueBytes(now);
+    if (blob > 0 && (_isBlobNext || !claim))
+    {
+        return SharedPace::IpAndUdp + OuterOverhead(OuterKind::Group) + blob - Rtps::RtpsHeaderSize;
+    }
+    return claim ? SharedPace::IpAndUdp + OuterOverhead(OuterKind::Claim) +
+                       Claim::SizeWith(_self.Headers.size(), claim->Answers,
+                                       claim->WithCertificate ? _self.Certificate.size() : 0)
+                 : 0;
+}
+
+// Claims and messages of blobs take turns: claims that nobody answers would keep back all blobs.
+std::optional<std::vector<std::uint8_t>> SealedCore::TakeDue(TimePoint now)
+{
+    const std::lock_guard lock(_mutex);
+    FollowEpochs();
+    if (!_pace.IsFree(now))
     {
         return std::nullopt;
     }
+    auto blob = _isBlobNext ? _blobs.TakeDue(now) : std::nullopt;
+    const auto claim = blob ? std::nullopt : _claims.TakeDue(_epochs.Newest(), now);
+    if (!blob && !claim)
+    {
+        blob = _blobs.TakeDue(now);
+    }
+    if (!blob && !claim)
+    {
+        return std::nullopt;
+    }
+    _isBlobNext = claim.has_value();
     std::vector<std::uint8_t> sealed;
     const SealFault fault = claim ? _sealing.SealClaim(*claim, sealed) : _sealing.SealBlob(*blob, sealed);
     if (fault != SealFault::None)
@@ -348,7 +376,7 @@ std::optional<std::vector<std::uint8_t>> SealedCore::TakeOwn(TimePoint now)
         _member->Note(_member->Name(), std::string("a claim was not sent: ") + TextOf(fault), now);
         return std::nullopt;
     }
-    _budget.Take(sealed.size());
+    _pace.Take(sealed.size());
     return sealed;
 }
 

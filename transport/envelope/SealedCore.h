@@ -17,7 +17,6 @@
 #include "common/RecentMap.h"
 #include "envelope/BlobExchange.h"
 #include "envelope/BoundPeers.h"
-#include "envelope/ByteBudget.h"
 #include "envelope/ClaimExchange.h"
 #include "envelope/Member.h"
 #include "envelope/NodeVoices.h"
@@ -25,6 +24,7 @@
 #include "envelope/ProcessorBudget.h"
 #include "envelope/SealingSide.h"
 #include "envelope/SessionTable.h"
+#include "envelope/SharedPace.h"
 
 namespace Rabit::Envelope
 {
@@ -38,9 +38,6 @@ public:
     // Fills all bytes at random; returns false if there are none. Any thread.
     using Random = std::function<bool(std::span<std::uint8_t>)>;
 
-    // Bytes per second of claims and blobs, with the headers of IP and UDP, and the largest burst.
-    static constexpr double Rate = 6000.0;
-    static constexpr double Burst = 4000.0;
     static constexpr std::size_t MostLogs = 32;
     // Bulletins that wait to be learned. Further ones are asked for again.
     static constexpr std::size_t MostArrived = 2;
@@ -71,11 +68,17 @@ public:
 
     // True if Open has made something due since the last call.
     bool TakeIsNew() { return _isNew.exchange(false); }
-    std::optional<TimePoint> Due() const;
-    // Takes a sealed datagram that is due, for all; empty: none is. May store a bulletin, and so wait for the
-    // disk.
-    std::optional<std::vector<std::uint8_t>> TakeDue(TimePoint now);
+    // When Learn or TakeLogs has work; when TakeDue has. Empty: never.
+    std::optional<TimePoint> LocalDue() const;
+    std::optional<TimePoint> NetworkDue() const;
+    // Learns the bulletins that have arrived. May store one, and so wait for the disk.
+    void Learn();
     std::vector<std::string> TakeLogs();
+    // Bytes of the datagram that TakeDue would return now, with the headers of IP and UDP, but for padding;
+    // 0: none is due.
+    std::size_t DueBytes(TimePoint now);
+    // Takes a sealed datagram that is due, for all; empty: none is.
+    std::optional<std::vector<std::uint8_t>> TakeDue(TimePoint now);
 
     // For tests and counters.
     std::uint64_t Opened(OpenFault fault) const
@@ -114,7 +117,6 @@ private:
     void Listen(const Session &sender, SessionTag tag, TimePoint now);
     void Refused(const Opener::Result &result);
     void Log(std::string line);
-    std::optional<std::vector<std::uint8_t>> TakeOwn(TimePoint now);
 
     const std::shared_ptr<Member> _member;
     const Random _random;
@@ -128,7 +130,8 @@ private:
     ClaimExchange _claims;
     Opener _opener;
     BlobExchange _blobs;
-    ByteBudget _budget{Rate, Burst};
+    SharedPace _pace;
+    bool _isBlobNext = false;  // a claim was sent last
     NodeVoices _voices;
     ProcessorBudget _rows{RowsShare, ProcessorBudget::Reaction};
     TimePoint _callsFrom{};                                    // calls before are not answered

@@ -1,6 +1,7 @@
 #include "envelope/SealedSession.h"
 
 #include <openssl/rand.h>
+#include <rabit/base/Earliest.h>
 
 #include <utility>
 
@@ -20,7 +21,8 @@ bool FillAtRandom(std::span<std::uint8_t> bytes)
 
 }  // namespace
 
-SealedSession::SealedSession(std::shared_ptr<FleetMember> member) : _member(std::move(member))
+SealedSession::SealedSession(std::shared_ptr<FleetMember> member, std::shared_ptr<DiscoveryTurns> turns)
+    : _member(std::move(member)), _turns(std::move(turns))
 {
     // Start must not fail: it may run on a vendor's thread.
     if (!Made({RtpsHeader{}}))
@@ -29,6 +31,8 @@ SealedSession::SealedSession(std::shared_ptr<FleetMember> member) : _member(std:
                              "security");
     }
     Prepare();
+    // Start may run with a vendor's locks held, which Send takes in a turn.
+    _turns->SetExchange(*this, DiscoveryTurns::Kind::Introduction);
 }
 
 std::unique_ptr<SealedCore> SealedSession::Made(std::vector<RtpsHeader> headers) const
@@ -71,6 +75,7 @@ void SealedSession::Start(const RtpsHeader &vendor, const RtpsHeader &own, Calls
 
 void SealedSession::Stop()
 {
+    _turns->RemoveExchange(*this);
     DueThread::Stop();
 }
 
@@ -124,17 +129,47 @@ std::size_t SealedSession::MostAdded() const
     return Sealer::MostAdded;
 }
 
+std::size_t SealedSession::NextBytes()
+{
+    const std::size_t bytes = IsStarted() ? _core->DueBytes(Clock::now()) : 0;
+    if (IsStarted() && bytes == 0)
+    {
+        const std::lock_guard lock(_mutex);
+        WakeIfEarlier();  // to wait for the next one
+    }
+    return bytes;
+}
+
+void SealedSession::SendNext()
+{
+    const auto sealed = IsStarted() ? _core->TakeDue(Clock::now()) : std::nullopt;
+    if (sealed)
+    {
+        _calls.Send(std::nullopt, *sealed);
+    }
+}
+
+// A datagram that waits for its turn is no work of the thread.
 std::optional<TimePoint> SealedSession::Due()
 {
-    return _core->Due();
+    const bool waitsForTurn = _turns->IsScheduled() && _turns->IsDue();
+    return Earliest({_core->LocalDue(), waitsForTurn ? std::nullopt : _core->NetworkDue()});
 }
 
 void SealedSession::Work(std::unique_lock<std::mutex> &lock)
 {
     lock.unlock();
-    while (const auto sealed = _core->TakeDue(Clock::now()))
+    _core->Learn();
+    if (!_turns->IsScheduled())
     {
-        _calls.Send(std::nullopt, *sealed);
+        while (const auto sealed = _core->TakeDue(Clock::now()))
+        {
+            _calls.Send(std::nullopt, *sealed);
+        }
+    }
+    else if (IsBy(_core->NetworkDue(), Clock::now()))
+    {
+        _turns->Due();
     }
     for (const std::string &line : _core->TakeLogs())
     {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include <rabit/transport/DiscoveryTurns.h>
 #include <rabit/transport/FleetMember.h>
 
 #include "common/DueThread.h"
@@ -26,25 +28,27 @@ class SealedCore;
 
 // Seals and opens the datagrams of one session of a backend: of one opening or rejoining, on one path.
 // Thread-safe: Seal and Open may be called on any threads at once, and wait for each other only while a
-// peer's changed addresses are noted. No lock is held while a function of Calls runs. A thread of its own
-// introduces the session to other nodes, and brings them certificates, lists of permissions and bulletins
-// (README.md, "How sessions are introduced").
-class SealedSession final : private DueThread
+// peer's changed addresses are noted. No lock of this object is held while a function of Calls runs. A thread
+// of its own introduces the session to other nodes, and brings them certificates, lists of permissions and
+// bulletins (README.md, "How sessions are introduced"). These datagrams wait for their turn
+// (DiscoveryTurns.h) where the session's holder gives turns.
+class SealedSession final : private DueThread, private DiscoveryTurns::Exchange
 {
 public:
     struct Calls
     {
-        // Sends a sealed datagram as it is, on this object's thread: to one place, or, if empty, to all by
-        // every way that the participant's announcements go (the group, and peers that are listed or known).
-        // Must not call Start or Stop.
+        // Sends a sealed datagram as it is, on this object's thread, or in a turn on the holder's: to one
+        // place, or, if empty, to all by every way that the participant's announcements go (the group, and
+        // peers that are listed or known). Must not call Start or Stop.
         std::function<void(const std::optional<Rtps::Place> &to, std::span<const std::uint8_t> sealed)> Send;
         // Takes a log line. Any thread; may be empty.
         std::function<void(const std::string &)> Log;
     };
 
-    // The member must come from MakeFleetMember. Throws TransportError if there is no thread for it, or if
-    // OpenSSL fails.
-    explicit SealedSession(std::shared_ptr<FleetMember> member);
+    // The member must come from MakeFleetMember. `turns`: of the backend's session. Throws TransportError if
+    // there is no thread for it, or if OpenSSL fails.
+    explicit SealedSession(std::shared_ptr<FleetMember> member,
+                           std::shared_ptr<DiscoveryTurns> turns = std::make_shared<DiscoveryTurns>());
     SealedSession(const SealedSession &) = delete;
     SealedSession &operator=(const SealedSession &) = delete;
     // Calls Stop.
@@ -90,11 +94,17 @@ private:
     std::unique_ptr<SealedCore> Made(std::vector<RtpsHeader> headers) const;
     std::optional<Clock::time_point> Due() override;
     void Work(std::unique_lock<std::mutex> &lock) override;
+    // DiscoveryTurns::Exchange
+    std::size_t NextBytes() override;
+    void SendNext() override;
+    // Introductions do not tell how long they waited.
+    std::chrono::nanoseconds QueueingDelay() const override { return std::chrono::nanoseconds(0); }
 
     // Made by Start.
     std::unique_ptr<SealedCore> _core;
     Calls _calls;
     std::shared_ptr<FleetMember> _member;
+    const std::shared_ptr<DiscoveryTurns> _turns;
     std::atomic<bool> _isStarted = false;
 };
 

@@ -99,7 +99,8 @@ protected:
     {
         A.SetOwn(BlobKind::Permissions, Of, std::make_shared<const Bytes>(Content));
     }
-    // Runs in steps of a millisecond. `isLost`: for each datagram at each receiver.
+    // Runs in steps of a millisecond. `isLost`: for each datagram at each receiver. Expects that DueBytes
+    // said what goes out, without padding.
     template <typename IsLost>
     void Run(std::chrono::milliseconds time, const IsLost &isLost)
     {
@@ -107,7 +108,9 @@ protected:
         {
             for (std::size_t from = 0; from < 3; ++from)
             {
+                const std::size_t said = All[from]->DueBytes(Now);
                 const auto sent = All[from]->TakeDue(Now);
+                EXPECT_EQ((said + 3) / 4 * 4, sent ? sent->Message.size() : 0u);
                 const auto message = sent ? ReadBlobMessage(sent->Message) : std::nullopt;
                 for (std::size_t to = 0; message && to < 3; ++to)
                 {
@@ -245,7 +248,7 @@ TEST_F(BlobExchanges, TakeNoPartsFromOthersThanTheSource)
     EXPECT_EQ(Came.count(2), 1u);
     EXPECT_EQ(Came.count(1), 0u);
     // The source is silent, and another session names the same blob.
-    Run(2s);
+    Run(BlobExchange::SourcePatience);
     B.Want(BlobKind::Permissions, Of, {.Tag = 1, .In = 4}, Now);
     Run(2s);
     EXPECT_EQ(Came.count(1), 1u);

@@ -24,7 +24,7 @@ protected:
         TimePoint At{};
         ClaimExchange::Outgoing Claim;
     };
-    // Runs in steps of a millisecond. Returns what went out.
+    // Runs in steps of a millisecond. Returns what went out, and expects that Next said so before.
     std::vector<Sent> Run(std::chrono::milliseconds time)
     {
         std::vector<Sent> sent;
@@ -32,8 +32,14 @@ protected:
         {
             while (Exchange.Due() && *Exchange.Due() <= Now)
             {
-                if (auto claim = Exchange.TakeDue(7, Now))
+                const auto next = Exchange.Next(7, Now);
+                auto claim = Exchange.TakeDue(7, Now);
+                EXPECT_EQ(next.has_value(), claim.has_value());
+                if (next && claim)
                 {
+                    EXPECT_EQ(next->In, claim->In);
+                    EXPECT_EQ(next->Answers, claim->Answers.size());
+                    EXPECT_EQ(next->WithCertificate, claim->WithCertificate);
                     sent.push_back({.At = Now, .Claim = std::move(*claim)});
                 }
             }
@@ -155,6 +161,17 @@ TEST_F(ClaimExchanges, AskASessionThatIsHeardAtGrowingIntervals)
     EXPECT_GE(sent.back().At - sent[sent.size() - 2].At, 300ms);
     EXPECT_NE(sent[0].Claim.Challenge, Nonce{});
     EXPECT_FALSE(sent[0].Claim.WithCertificate);
+}
+
+TEST_F(ClaimExchanges, AskAsOftenAfterALongWaitForATurn)
+{
+    Exchange.Heard(5, Standing::Proven, 7, Now);
+    for (const TimePoint end = Now + 8s; Now < end; Now += 10ms)
+    {
+        Exchange.Heard(5, Standing::Proven, 7, Now);
+        Exchange.Next(7, Now);
+    }
+    EXPECT_GE(Run(1500ms).size(), 4u);
 }
 
 TEST_F(ClaimExchanges, AskNobodyThatIsSilent)

@@ -17,6 +17,8 @@
 #include <utility>
 #include <vector>
 
+#include <rabit/base/Earliest.h>
+
 #include "common/RtpsReader.h"
 #include "envelope/SealNodes.h"
 #include "envelope/SealedCore.h"
@@ -36,6 +38,8 @@ struct Medium
     Duration Delay = 2ms;
     Duration Beat = 500ms;
     std::uint64_t Seed = 1;
+    // Bytes a second of introductions for which the holder of each node gives turns; 0: it gives none.
+    double Turns = 0.0;
 };
 
 class SealedFleet
@@ -54,6 +58,7 @@ public:
         bool MayStore = true;
         std::int64_t Utc = 1'800'000'000;
         int Openings = 0;
+        TimePoint NextTurn{};
     };
 
     explicit SealedFleet(const Medium &medium = {}) : _medium(medium), _random(medium.Seed) {}
@@ -241,7 +246,7 @@ public:
     // Sends a datagram as that node, to all.
     void Send(std::size_t from, const Bytes &datagram)
     {
-        const std::size_t size = datagram.size() + ByteBudget::IpAndUdp;
+        const std::size_t size = datagram.size() + SharedPace::IpAndUdp;
         const auto air = std::chrono::duration_cast<Duration>(
             std::chrono::duration<double>(static_cast<double>(size) * 8.0 / _medium.BitsPerSecond));
         _free = std::max(_free, Now) + air;
@@ -273,6 +278,7 @@ public:
     std::vector<Bytes> Recorded;
     std::size_t OwnBytes = 0;  // claims and blobs that were sent, with the headers of IP and UDP
     std::map<std::size_t, std::size_t> OwnBytesOf;
+    std::size_t Misjudged = 0;  // datagrams of other sizes than SealedCore::DueBytes said, but for padding
 
 private:
     double Uniform() { return static_cast<double>(_random() >> 11) * 0x1p-53; }
@@ -303,6 +309,39 @@ private:
             node.Heard[from] = Now;
         }
     }
+    static std::optional<TimePoint> DueOf(const Node &node)
+    {
+        if (!node.Core)
+        {
+            return std::nullopt;
+        }
+        const auto network = node.Core->NetworkDue();
+        return Rabit::Earliest({node.Core->LocalDue(),
+                                network ? std::optional(std::max(*network, node.NextTurn)) : std::nullopt});
+    }
+    void SendDue(std::size_t index)
+    {
+        constexpr std::size_t padding = 32;
+        Node &node = *Nodes[index];
+        if (Now < node.NextTurn)
+        {
+            return;
+        }
+        const std::size_t said = node.Core->DueBytes(Now);
+        if (const auto sealed = node.Core->TakeDue(Now))
+        {
+            const std::size_t size = sealed->size() + SharedPace::IpAndUdp;
+            Misjudged += size < said || size > said + padding ? 1 : 0;
+            OwnBytes += size;
+            OwnBytesOf[index] += size;
+            if (_medium.Turns > 0.0)
+            {
+                node.NextTurn = Now + std::chrono::duration_cast<Duration>(std::chrono::duration<double>(
+                                          static_cast<double>(size) / _medium.Turns));
+            }
+            Send(index, *sealed);
+        }
+    }
     // Does what is due next, unless it is after `end`.
     bool Step(TimePoint end)
     {
@@ -311,7 +350,7 @@ private:
         std::size_t dueIndex = 0;
         for (std::size_t index = 0; index < Nodes.size(); ++index)
         {
-            const auto at = Nodes[index]->Core ? Nodes[index]->Core->Due() : std::nullopt;
+            const auto at = DueOf(*Nodes[index]);
             if (at && (!next || *at < *next))
             {
                 next = at;
@@ -333,12 +372,8 @@ private:
             work();
             return true;
         }
-        if (const auto sealed = due->Core->TakeDue(Now))
-        {
-            OwnBytes += sealed->size() + ByteBudget::IpAndUdp;
-            OwnBytesOf[dueIndex] += sealed->size() + ByteBudget::IpAndUdp;
-            Send(dueIndex, *sealed);
-        }
+        due->Core->Learn();
+        SendDue(dueIndex);
         for (std::string &line : due->Core->TakeLogs())
         {
             due->Logs.push_back(std::move(line));

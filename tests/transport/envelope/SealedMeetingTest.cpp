@@ -9,6 +9,7 @@ namespace
 using namespace SealedFleets;
 
 constexpr Medium Megabit{.BitsPerSecond = 1e6};
+constexpr double SlowRadio = 250e3;
 
 TEST(SealedMeeting, TenNodesThatStartAtOnceAreOpenToEachOtherWithin3Seconds)
 {
@@ -30,6 +31,68 @@ TEST(SealedMeeting, TenNodesThatStartOneAfterTheOtherAreOpenToEachOtherWithin3Se
     EXPECT_LE(fleet->RunUntil([&] { return fleet->AreAllOpen(); }, 10s), 3s);
     fleet->Run(3s);
     EXPECT_LE(fleet->OwnBytes, 80'000u);
+}
+
+TEST(SealedMeeting, ElevenNodesThatStartAtOnceDoNotFillASlowRadio)
+{
+    const auto fleet = FleetOf(11, {.BitsPerSecond = SlowRadio});
+    fleet->StartAll();
+    EXPECT_LE(fleet->RunUntil([&] { return fleet->AreAllOpen(); }, 20s), 4s);
+    fleet->Run(3s);
+    EXPECT_LE(fleet->OwnBytes, 60'000u);
+}
+
+TEST(SealedMeeting, ElevenNodesMeetOnASlowRadioThatTheirTrafficFillsByTwoThirds)
+{
+    const auto fleet = FleetOf(11, {.BitsPerSecond = SlowRadio, .Beat = 100ms});
+    fleet->StartAll();
+    EXPECT_LE(fleet->RunUntil([&] { return fleet->AreAllOpen(); }, 20s), 5s);
+    fleet->Run(3s);
+    EXPECT_LE(fleet->OwnBytes, 80'000u);
+}
+
+// The others ask it all the time, and it never answers.
+TEST(SealedMeeting, ANodeThatHearsNobodyDoesNotKeepTheOthersFromMeeting)
+{
+    const auto fleet = FleetOf(11, {.BitsPerSecond = SlowRadio});
+    fleet->Hears = [](std::size_t, std::size_t to) { return to != 10; };
+    fleet->StartAll();
+    const auto areOthersOpen = [&]
+    {
+        for (std::size_t to = 0; to < 10; ++to)
+        {
+            for (std::size_t from = 0; from < 10; ++from)
+            {
+                if (to != from && !fleet->IsOpen(to, from))
+                {
+                    return false;
+                }
+            }
+        }
+        return true;
+    };
+    EXPECT_LE(fleet->RunUntil(areOthersOpen, 20s), 5s);
+}
+
+TEST(SealedMeeting, ElevenNodesMeetWhereEachHasTurnsForFiveHundredBytesASecond)
+{
+    const auto fleet = FleetOf(11, {.BitsPerSecond = SlowRadio, .Turns = 500.0});
+    fleet->StartAll();
+    EXPECT_LE(fleet->RunUntil([&] { return fleet->AreAllOpen(); }, 60s), 15s);
+    EXPECT_LE(fleet->OwnBytes, 80'000u);
+}
+
+// With a budget, each datagram is given the turn for its size.
+TEST(SealedMeeting, IntroductionsHaveTheSizeThatTheySayBefore)
+{
+    const auto fleet = FleetOf(4, {.Loss = 0.2});
+    fleet->StartAll();
+    fleet->Run(5s);
+    fleet->Nodes[0]->Keys->Learn(fleet->BulletinOf(2, {1, 2, 3, 4}));
+    fleet->StartNode(3);
+    fleet->Run(5s);
+    EXPECT_GT(fleet->OwnBytes, 0u);
+    EXPECT_EQ(fleet->Misjudged, 0u);
 }
 
 TEST(SealedMeeting, NodesThatKnowEachOtherSayNothing)

@@ -241,7 +241,7 @@ TEST(SealedRecordings, OfManyClaimsTakeBoundedMemoryAndBoundedAnswers)
     }
     const double seconds = std::chrono::duration<double>(fleet->Now - since).count();
     EXPECT_LE(static_cast<double>(fleet->OwnBytesOf[0] - before),
-              SealedCore::Rate * seconds + SealedCore::Burst + 2'000.0);
+              SharedPace::MostOfOne * seconds + SharedPace::Burst + 2'000.0);
     EXPECT_LE(fleet->Nodes[0]->Core->Remembered().Sessions, SessionTable::MostUnprovenOfOne);
     EXPECT_LE(
         fleet->Nodes[0]->Core->Remembered().Others,

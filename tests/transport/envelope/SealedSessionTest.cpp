@@ -77,7 +77,8 @@ protected:
         return Rabit::Rtps::PrefixOf(std::span(header).subspan(Prefix));
     }
 
-    SealedSession A{MemberWithAClock(1)};
+    const std::shared_ptr<Rabit::DiscoveryTurns> TurnsOfA = std::make_shared<Rabit::DiscoveryTurns>();
+    SealedSession A{MemberWithAClock(1), TurnsOfA};
     SealedSession B{MemberWithAClock(2)};
     std::atomic<int> SentByA = 0;
     std::atomic<int> SentByB = 0;
@@ -94,6 +95,29 @@ TEST_F(SealedSessions, MeetAndOpenEachOthersDatagrams)
     EXPECT_TRUE(B.MayRead(PrefixOfNumber(1), "fleet/node1/topic1"));
     EXPECT_FALSE(B.NameOf(PrefixOfNumber(3)).has_value());
     EXPECT_FALSE(B.MayWrite(PrefixOfNumber(3), "fleet/node1/topic1"));
+}
+
+TEST_F(SealedSessions, AreIntroducedInTurnsAloneWhereTheHolderGivesThem)
+{
+    std::atomic<int> due = 0;
+    TurnsOfA->Schedule([&due] { ++due; });
+    Start(A, B, 1, SentByA);
+    Start(B, A, 2, SentByB);
+    EXPECT_TRUE(RabitTest::Eventually([&] { return SentByB > 1 && TurnsOfA->IsDue(); }));
+    EXPECT_GE(due.load(), 1);
+    EXPECT_EQ(SentByA.load(), 0);
+    EXPECT_TRUE(RabitTest::Eventually(
+        [&]
+        {
+            if (TurnsOfA->IsDue() && TurnsOfA->NextBytes() > 0)
+            {
+                TurnsOfA->SendNext();
+            }
+            return IsHeard(A, B, 1) && IsHeard(B, A, 2);
+        }));
+    EXPECT_GE(SentByA.load(), 2);
+    A.Stop();
+    EXPECT_EQ(TurnsOfA->NextBytes(), 0u);
 }
 
 TEST_F(SealedSessions, SealAndOpenNothingBeforeTheStart)

@@ -60,8 +60,10 @@ void CheckSealable(const TransportSettings &settings)
     }
 }
 
-SealedTraffic::SealedTraffic(const std::shared_ptr<FleetMember> &member, Envelope::SealedSession::Calls calls)
-    : _calls(std::move(calls)), _session(member)
+SealedTraffic::SealedTraffic(const std::shared_ptr<FleetMember> &member,
+                             const std::shared_ptr<DiscoveryTurns> &turns,
+                             Envelope::SealedSession::Calls calls)
+    : _calls(std::move(calls)), _session(member, turns)
 {
 }
 

@@ -21,9 +21,10 @@ void CheckSealable(const TransportSettings &settings);
 class SealedTraffic
 {
 public:
-    // `calls`: as SealedSession has them. Send may be called as soon as there was a datagram to seal. Throws
+    // As SealedSession has them. Send may be called as soon as there was a datagram to seal. Throws
     // TransportError.
-    SealedTraffic(const std::shared_ptr<FleetMember> &member, Envelope::SealedSession::Calls calls);
+    SealedTraffic(const std::shared_ptr<FleetMember> &member, const std::shared_ptr<DiscoveryTurns> &turns,
+                  Envelope::SealedSession::Calls calls);
     // When this returns, Send is not in progress and will not be called. Seal and Open go on.
     void Stop() { _session.Stop(); }
 

@@ -483,7 +483,7 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
       // The vendor itself checks which fragments it has sent.
       _guard(GuardMode(settings), settings.AnnouncementPeriod, Rtps::RtpsGuard::Vendor::CycloneDds,
              std::move(goodbyes), std::move(accounts)),
-      _seal(MakeSeal(settings))
+      _seal(MakeSeal(settings, turns))
 {
     _meets = GuardMode(settings) == Rtps::RtpsGuard::Mode::Full;
     // The thread is made before the vendor calls this object: if it cannot be, nothing is to be undone.
@@ -561,7 +561,8 @@ VendorDomain::VendorDomain(const TransportSettings &settings, const std::shared_
     }
 }
 
-std::unique_ptr<SealedTraffic> VendorDomain::MakeSeal(const TransportSettings &settings)
+std::unique_ptr<SealedTraffic> VendorDomain::MakeSeal(const TransportSettings &settings,
+                                                      const std::shared_ptr<DiscoveryTurns> &turns)
 {
     if (settings.Member == nullptr)
     {
@@ -569,7 +570,7 @@ std::unique_ptr<SealedTraffic> VendorDomain::MakeSeal(const TransportSettings &s
     }
     CheckSealable(settings);
     return std::make_unique<SealedTraffic>(
-        settings.Member,
+        settings.Member, turns,
         Envelope::SealedSession::Calls{
             .Send = [this](const auto & /*to*/, auto sealed) { SendSealed(sealed); },
             .Log = [log = _log](const std::string &line) { log->Line(line); }});

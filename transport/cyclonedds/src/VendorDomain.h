@@ -34,8 +34,8 @@ namespace Rabit::Cyclone
 class VendorDomain
 {
 public:
-    // Throws TransportError. The vendor's messages about the domain go to the log. The exchange of cards
-    // waits for `turns`; `sending` keeps the samples of its thread. `goodbyes`, `accounts`: as RtpsGuard.
+    // Throws TransportError. The vendor's messages about the domain go to the log. Cards and introductions
+    // wait for `turns`; `sending` keeps the samples of its thread. `goodbyes`, `accounts`: as RtpsGuard.
     VendorDomain(const TransportSettings &settings, const std::shared_ptr<SessionLog> &log,
                  const std::shared_ptr<DiscoveryTurns> &turns, std::shared_ptr<SendingTurn> sending,
                  std::shared_ptr<Rtps::RecentGoodbyes> goodbyes, std::shared_ptr<Rtps::Ledger> accounts);
@@ -86,7 +86,8 @@ private:
     static std::size_t OnReceived(void *self, unsigned char *datagram, std::size_t size, std::size_t capacity,
                                   const RabitCyclonePlace *from, bool direct);
     // Null: the session has no member. Throws TransportError.
-    std::unique_ptr<SealedTraffic> MakeSeal(const TransportSettings &settings);
+    std::unique_ptr<SealedTraffic> MakeSeal(const TransportSettings &settings,
+                                            const std::shared_ptr<DiscoveryTurns> &turns);
     // Throws TransportError if a datagram could pass by the seal; the domain is then gone.
     // End the domain, and throw TransportError, if the configuration has DDS Security, or if the keys cannot
     // protect all datagrams.
@@ -113,7 +114,7 @@ private:
     // The ways by which the participant is announced, and without multicast those to
     // SealedSession::Strangers, or to their hosts' usual ports.
     std::vector<RabitCycloneRoute> WaysOfSealed();
-    // Runs on the seal's thread.
+    // Runs on the seal's thread, or on that of the session's holder (DiscoveryTurns).
     void SendSealed(std::span<const std::uint8_t> sealed);
     // Runs on the meeting's thread.
     void DeliverCard(const Rtps::HostAddress &from, std::span<std::uint8_t> datagram);

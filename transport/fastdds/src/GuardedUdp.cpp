@@ -282,7 +282,7 @@ private:
             _output.NoteHeard(SenderOf(datagram), *at, std::chrono::steady_clock::now());
         }
     }
-    // Runs on the thread of the SealedSession.
+    // Runs on the thread of the SealedSession, or on that of the session's holder (DiscoveryTurns).
     void SendSealed(std::span<const std::uint8_t> sealed)
     {
         const auto now = std::chrono::steady_clock::now();

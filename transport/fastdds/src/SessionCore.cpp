@@ -117,7 +117,8 @@ SessionCore::SessionCore(const TransportSettings &settings, const SessionContext
                                   .Memory = _multicast ? settings.Memory : settings.Lease,
                                   .IsMulticast = _multicast},
           context.Turns)),
-      _seal(settings.Member ? std::make_shared<Envelope::SealedSession>(settings.Member) : nullptr)
+      _seal(settings.Member ? std::make_shared<Envelope::SealedSession>(settings.Member, context.Turns)
+                            : nullptr)
 {
     const rtps::GuidPrefix_t prefix = MakeGuidPrefix();
     auto attributes = MakeParticipantAttributes(settings, Log(),

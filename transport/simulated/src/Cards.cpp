@@ -63,21 +63,29 @@ bool NetworkCore::SendCard(const ParticipantPtr &me)
     return true;
 }
 
-std::size_t NetworkCore::NextCardBytes(ParticipantState &participant)
+std::size_t NetworkCore::NextDiscoveryBytes(ParticipantState &participant)
 {
     const std::lock_guard lock(_mutex);
-    const std::size_t bytes = participant.Gone ? 0 : participant.Cards.DueBytes(CardTime());
-    if (bytes == 0)
+    if (participant.Gone)
+    {
+        return 0;
+    }
+    if (const std::size_t introduction = IntroductionBytes(participant); introduction > 0)
+    {
+        return introduction;
+    }
+    const std::size_t card = participant.Cards.DueBytes(CardTime());
+    if (card == 0)
     {
         AwaitCards(participant);
     }
-    return bytes;
+    return card;
 }
 
-void NetworkCore::SendNextCard(const ParticipantPtr &participant)
+void NetworkCore::SendNextDiscovery(const ParticipantPtr &participant)
 {
     const std::lock_guard lock(_mutex);
-    if (!participant->Gone)
+    if (!participant->Gone && !SendIntroduction(participant))
     {
         SendCard(participant);
     }

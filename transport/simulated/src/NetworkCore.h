@@ -80,8 +80,8 @@ public:
     // The most bytes that a seal adds to a packet; 0 without a member.
     static std::size_t MostOfSeal(const ParticipantState &participant);
     // DiscoveryTurns::Exchange of that participant.
-    std::size_t NextCardBytes(ParticipantState &participant);
-    void SendNextCard(const ParticipantPtr &participant);
+    std::size_t NextDiscoveryBytes(ParticipantState &participant);
+    void SendNextDiscovery(const ParticipantPtr &participant);
     Time CardDelay(const ParticipantState &participant) const;
     int Destinations(const ParticipantState &participant, const WriterState &writer) const;
     int MatchedWriters(const ReaderState &reader) const;
@@ -186,6 +186,10 @@ private:
     bool Opens(ParticipantState &at, ParticipantId from, const Datagram &datagram);
     void AwaitSeal(ParticipantState &me);
     void ServeSeal(const ParticipantPtr &me);
+    // Sends one datagram that introduces the participant. Returns false if none is due.
+    bool SendIntroduction(const ParticipantPtr &me);
+    // Its bytes; 0: none is due.
+    std::size_t IntroductionBytes(ParticipantState &me);
     // True if the sender's certificate has the sender's name.
     static bool MayMeet(const ParticipantState &me, ParticipantId from, const ParticipantState &sender);
     // Those endpoints that the sender's certificate allows.

@@ -46,8 +46,11 @@ public:
     // `sealed`: null for a plain datagram, which does not open either.
     bool Opens(const std::vector<std::uint8_t> *sealed, ParticipantId from, TimePoint now);
 
-    std::optional<TimePoint> Due() const { return _core->Due(); }
-    // Takes a datagram of the seal's own that is due, for all; empty: none is.
+    // As those of SealedCore.
+    std::optional<TimePoint> LocalDue() const { return _core->LocalDue(); }
+    std::optional<TimePoint> NetworkDue() const { return _core->NetworkDue(); }
+    void Learn() { _core->Learn(); }
+    std::size_t DueBytes(TimePoint now) { return _core->DueBytes(now); }
     std::optional<std::vector<std::uint8_t>> TakeDue(TimePoint now) { return _core->TakeDue(now); }
     std::vector<std::string> TakeLogs() { return _core->TakeLogs(); }
 

@@ -1,4 +1,6 @@
 // NetworkCore: the datagrams of participants with keys.
+#include <rabit/base/Earliest.h>
+
 #include <algorithm>
 #include <iterator>
 #include <memory>
@@ -52,24 +54,52 @@ bool NetworkCore::Opens(ParticipantState &at, ParticipantId from, const Datagram
 
 void NetworkCore::AwaitSeal(ParticipantState &me)
 {
-    Await(me.SealTimer, Event::Kind::SealTimer, me.Id, me.Seal->Due());
+    const bool waitsForTurn = me.Turns.IsScheduled() && me.Turns.IsDue();
+    Await(me.SealTimer, Event::Kind::SealTimer, me.Id,
+          Earliest({me.Seal->LocalDue(), waitsForTurn ? std::nullopt : me.Seal->NetworkDue()}));
 }
 
 void NetworkCore::ServeSeal(const ParticipantPtr &me)
 {
     me->SealTimer.At.reset();
-    while (auto outgoing = me->Seal->TakeDue(CardTime()))
-    {
-        Datagram datagram;
-        datagram.What = Datagram::Kind::Introduction;
-        datagram.Sealed = std::make_shared<const std::vector<std::uint8_t>>(std::move(*outgoing));
-        SendDiscovery(*me, Nobody, datagram);
-    }
+    me->Seal->Learn();
     for (std::string &line : me->Seal->TakeLogs())
     {
         _calls.emplace_back([me, line = std::move(line)] { me->Log->Line(line); });
     }
+    if (me->Turns.IsScheduled() && IsBy(me->Seal->NetworkDue(), CardTime()))
+    {
+        _calls.emplace_back([me] { me->Turns.Due(); });
+        return;
+    }
+    while (!me->Turns.IsScheduled() && SendIntroduction(me))
+    {
+    }
     AwaitSeal(*me);
+}
+
+bool NetworkCore::SendIntroduction(const ParticipantPtr &me)
+{
+    auto outgoing = me->Seal != nullptr ? me->Seal->TakeDue(CardTime()) : std::nullopt;
+    if (!outgoing)
+    {
+        return false;
+    }
+    Datagram datagram;
+    datagram.What = Datagram::Kind::Introduction;
+    datagram.Sealed = std::make_shared<const std::vector<std::uint8_t>>(std::move(*outgoing));
+    SendDiscovery(*me, Nobody, datagram);
+    return true;
+}
+
+std::size_t NetworkCore::IntroductionBytes(ParticipantState &me)
+{
+    const std::size_t bytes = me.Seal != nullptr ? me.Seal->DueBytes(CardTime()) : 0;
+    if (me.Seal != nullptr && bytes == 0)
+    {
+        AwaitSeal(me);
+    }
+    return bytes;
 }
 
 bool NetworkCore::MayMeet(const ParticipantState &me, ParticipantId from, const ParticipantState &sender)

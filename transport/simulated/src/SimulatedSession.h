@@ -34,8 +34,8 @@ public:
     std::vector<std::string> RemoteTopics() const override { return _participant->Topics.RemoteTopics(); }
 
 private:
-    std::size_t NextBytes() override { return _core->NextCardBytes(*_participant); }
-    void SendNext() override { _core->SendNextCard(_participant); }
+    std::size_t NextBytes() override { return _core->NextDiscoveryBytes(*_participant); }
+    void SendNext() override { _core->SendNextDiscovery(_participant); }
     std::chrono::nanoseconds QueueingDelay() const override { return _core->CardDelay(*_participant); }
 
     const std::shared_ptr<NetworkCore> _core;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -10,8 +12,9 @@
 namespace Rabit
 {
 
-// Lets the holder of a session decide when the session's exchange of cards sends: the exchange waits for its
-// turn, as everything else that the holder sends. Until Schedule is called, the exchange sends by itself.
+// Lets the holder of a session decide when the session's discovery sends: the exchange of cards and, on a
+// node with keys, the introduction of its sealed session. They wait for their turn, as everything else that
+// the holder sends. Until Schedule is called, they send by themselves.
 //
 //     DiscoveryTurns *turns = session.Discovery();
 //     turns->Schedule([] { wake the sending thread });
@@ -24,6 +27,12 @@ namespace Rabit
 class DiscoveryTurns
 {
 public:
+    // The exchanges of a session. If several have a datagram due, they take turns, in this order.
+    enum class Kind
+    {
+        Introduction,  // before it, a node with keys reads no card
+        Cards
+    };
     // An exchange of a session. Its functions are called one at a time, on the thread that calls NextBytes
     // and SendNext.
     class Exchange
@@ -35,7 +44,7 @@ public:
         // Sends one datagram to its destinations, if one is due. May wait for a socket, 100 ms for each.
         virtual void SendNext() = 0;
         // How long the other nodes' messages of this exchange have lately waited in queues: the median of
-        // the nodes; 0: not at all, or none was heard for some seconds.
+        // the nodes; 0: not at all, none was heard for some seconds, or the messages do not tell.
         virtual std::chrono::nanoseconds QueueingDelay() const = 0;
 
     protected:
@@ -44,7 +53,7 @@ public:
 
     // The holder's side.
 
-    // From now on, the exchange sends in SendNext alone. `onDue` is called, on any thread and without locks,
+    // From now on, the exchanges send in SendNext alone. `onDue` is called, on any thread and without locks,
     // each time that IsDue becomes true. It must not call this object. Call once.
     void Schedule(std::function<void()> onDue)
     {
@@ -53,49 +62,72 @@ public:
     }
     // True if NextBytes may be more than 0. Costs one load.
     bool IsDue() const { return _isDue; }
-    // Exchange::NextBytes. 0 makes IsDue false until the next call of `onDue`.
+    // Exchange::NextBytes of the next exchange that has a datagram due. 0 makes IsDue false until the next
+    // call of `onDue`.
     std::size_t NextBytes()
     {
         const std::lock_guard lock(_mutex);
         _isDue = false;
-        const std::size_t bytes = _exchange != nullptr ? _exchange->NextBytes() : 0;
-        if (bytes > 0)
+        _next = nullptr;
+        for (std::size_t i = 0; i < _exchanges.size(); ++i)
         {
-            _isDue = true;
+            const std::size_t place = (_first + i) % _exchanges.size();
+            Exchange *const exchange = _exchanges[place];
+            const std::size_t bytes = exchange != nullptr ? exchange->NextBytes() : 0;
+            if (bytes > 0)
+            {
+                _next = exchange;
+                _afterNext = (place + 1) % _exchanges.size();
+                _isDue = true;
+                return bytes;
+            }
         }
-        return bytes;
+        return 0;
     }
+    // Exchange::SendNext of the exchange whose bytes NextBytes returned last.
     void SendNext()
     {
         const std::lock_guard lock(_mutex);
-        if (_exchange != nullptr)
+        if (_next != nullptr)
         {
-            _exchange->SendNext();
+            _next->SendNext();
+            _first = _afterNext;
         }
     }
-    // Exchange::QueueingDelay
+    // The longest Exchange::QueueingDelay.
     std::chrono::nanoseconds QueueingDelay()
     {
         const std::lock_guard lock(_mutex);
-        return _exchange != nullptr ? _exchange->QueueingDelay() : std::chrono::nanoseconds(0);
+        std::chrono::nanoseconds longest{0};
+        for (const Exchange *const exchange : _exchanges)
+        {
+            longest = exchange != nullptr ? std::max(longest, exchange->QueueingDelay()) : longest;
+        }
+        return longest;
     }
 
     // The session's side.
 
-    // From now on `exchange` takes turns, in place of an earlier one. It is not called any more when this, or
-    // RemoveExchange, returns.
-    void SetExchange(Exchange &exchange)
+    // From now on `exchange` takes turns, in place of an earlier one of that kind. The earlier one is not
+    // called any more when this returns.
+    void SetExchange(Exchange &exchange, Kind kind = Kind::Cards)
     {
         const std::lock_guard lock(_mutex);
-        _exchange = &exchange;
+        Exchange *&place = _exchanges[static_cast<std::size_t>(kind)];
+        _next = _next == place ? nullptr : _next;
+        place = &exchange;
     }
-    // Nothing happens if another one takes turns.
+    // `exchange` is not called any more when this returns. Nothing happens if it takes no turns.
     void RemoveExchange(const Exchange &exchange)
     {
         const std::lock_guard lock(_mutex);
-        _exchange = _exchange == &exchange ? nullptr : _exchange;
+        for (Exchange *&place : _exchanges)
+        {
+            place = place == &exchange ? nullptr : place;
+        }
+        _next = _next == &exchange ? nullptr : _next;
     }
-    // True if the exchange sends in SendNext alone, and calls Due when a datagram is due.
+    // True if the exchanges send in SendNext alone, and call Due when a datagram is due.
     bool IsScheduled() const { return _isScheduled; }
     // A datagram is due. Call without locks that the exchange's functions take, and after IsScheduled.
     void Due()
@@ -108,8 +140,13 @@ public:
 
 private:
     std::mutex _mutex;
-    Exchange *_exchange = nullptr;  // guarded by _mutex, which is held while its functions run
-    std::function<void()> _onDue;   // set before _isScheduled, and not changed afterwards
+    // Of each Kind. Guarded by _mutex, which is held while their functions run.
+    std::array<Exchange *, 2> _exchanges{};
+    // Guarded by _mutex: the exchange that sends in SendNext, the place after it, and the place that is asked first.
+    Exchange *_next = nullptr;
+    std::size_t _afterNext = 0;
+    std::size_t _first = 0;
+    std::function<void()> _onDue;  // set before _isScheduled, and not changed afterwards
     std::atomic<bool> _isScheduled{false};
     std::atomic<bool> _isDue{false};
 };
