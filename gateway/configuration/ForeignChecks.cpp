@@ -28,9 +28,9 @@ public:
 
     void Run()
     {
-        if (_config.Tool && !_config.Foreign.empty())
+        if (_config.Tool && !std::all_of(_config.Foreign.begin(), _config.Foreign.end(), IsSubscribed))
         {
-            Fail(0, "a tool has no `foreign` topics");
+            Fail(0, "a tool writes no `foreign` topics");
         }
         for (const PublishRule &rule : _config.Publish)
         {

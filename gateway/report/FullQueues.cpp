@@ -77,17 +77,19 @@ void FullQueues::LookHere(const std::vector<QueueInfo> &queues, const Gateway::F
         {
             continue;
         }
+        const std::string isFull = "it is full (" + std::to_string(info.FillLevel) +
+                                   (info.FillLevel == 1 ? " message)" : " messages)");
         if (!waiting.empty())
         {
-            problems.push_back(
-                {"queue " + info.Name, waiting.size() == 1 ? waiting.front() : "",
-                 "it is full, and its manager takes no messages from it, or too few: those of " +
-                     ListedNames(waiting) + " wait"});
+            problems.push_back({"queue " + info.Name, waiting.size() == 1 ? waiting.front() : "",
+                                isFull +
+                                    ", and its manager takes no messages from it, or too few: those of " +
+                                    ListedNames(waiting) + " wait"});
         }
         else if (HasRefusedLately(queue, now))
         {
             problems.push_back({"queue " + info.Name, "",
-                                "it is full and refuses messages: its manager takes none, or too few"});
+                                isFull + " and refuses messages: its manager takes none, or too few"});
         }
     }
     _here = std::move(full);

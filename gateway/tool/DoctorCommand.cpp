@@ -9,6 +9,7 @@
 
 #include "Command.h"
 #include "FleetSession.h"
+#include "RosNodes.h"
 #include "SafeText.h"
 #include "Table.h"
 #include "doctor/MachineChecks.h"
@@ -69,6 +70,8 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
 {
     GatewayConfig config = ConfigOf(options);
     config.ProblemsOf = {"*"};
+    RosNodes ros;
+    RosNodes::AddTo(config);
     const Doctor::MachineFacts before = Doctor::LookAtMachine();
     const std::vector<Doctor::Interface> used = Doctor::UsedBy(config, before.Interfaces);
     std::vector<int> domains{config.Domain};
@@ -88,7 +91,8 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
         // NetworkTrial listens before DDS does, so that no answer is missed.
         const Doctor::NetworkTrial trial(used, Doctor::UnusedBy(config, before.Interfaces), config.Node,
                                          domains, AllDomains(), Doctor::OwnSealedSessions(config));
-        FleetSession session(config, options, wakeup);
+        FleetSession session(config, options, wakeup,
+                             [&ros](FleetSession &joining) { ros.Attach(joining.Workspace()); });
         double listened = options.Wait;
         session.WaitUntil(listened);
         if (!session.IsAnybodyThere() && !options.IsWaitGiven)
@@ -105,7 +109,8 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
         }
         const std::vector<FleetSession::Node> nodes = session.Nodes();
         const Gateway::Fleet fleet = session.Fleet();
-        const Doctor::NetworkFacts network = trial.Facts();
+        Doctor::NetworkFacts network = trial.Facts();
+        Doctor::NameRosPrograms(ros.Of(fleet), network);
         anyNode = session.IsAnybodyThere();
         Append(findings, Doctor::OfBuffers(config, before, Doctor::LookAtMachine()));
         Append(findings, Doctor::OfMulticast(config, used, network, Doctor::NodesThatHear(fleet)));
@@ -127,7 +132,7 @@ int Examine(const CommonOptions &options, Wakeup &wakeup)
         Append(findings, Doctor::OfPaths(fleet, session.Seconds()));
         Append(findings, Doctor::OfTypes(nodes));
         Append(findings, Doctor::OfClocks(nodes, fleet));
-        Append(findings, Doctor::OfLinks(nodes));
+        Append(findings, Doctor::OfLinks(nodes, fleet));
         Append(findings, Doctor::OfLosses(nodes));
     }
     catch (const NetworkError &error)

@@ -21,6 +21,7 @@ struct Options
 {
     CommonOptions Common;
     std::string What;
+    ForeignOptions Foreign;
     std::string Field;
     bool Once = false;
     double Rate = 0.0;
@@ -101,7 +102,7 @@ private:
     bool PrintText(const Sample &sample)
     {
         const auto text = _samples.Type().ToText(sample.Bytes);
-        return Output::Line(sample.Node + "/" + _samples.Message() + "  age " +
+        return Output::Line((sample.Node.empty() ? "" : sample.Node + "/") + _samples.Message() + "  age " +
                             NumberText(sample.Age, 3, " s  ") + text.value_or("(too large to show)"));
     }
 
@@ -125,7 +126,7 @@ private:
         {
             return Output::Line(JsonText(value));
         }
-        return Output::Object({{"node", sample.Node},
+        return Output::Object({{"node", sample.Node.empty() ? Json(nullptr) : Json(sample.Node)},
                                {"message", _samples.Message()},
                                {"type", _samples.Type().Name()},
                                {"age_s", sample.Age},
@@ -174,7 +175,7 @@ int Show(const Options &options, FleetSession &session, Samples &samples, Wakeup
 
 int Run(const Options &options, Wakeup &wakeup)
 {
-    return ListenTo(options.Common, options.What, wakeup,
+    return ListenTo(options.Common, options.What, options.Foreign, wakeup,
                     [&](FleetSession &session, Samples &samples)
                     { return Show(options, session, samples, wakeup); });
 }
@@ -190,11 +191,13 @@ void AddEchoCommand(CLI::App &app, Chosen &chosen)
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any node; Pose: of all nodes")
         ->required();
     AddCommonOptions(*command, options->Common, 5.0);
+    AddForeignOptions(*command, options->Foreign);
     command->add_option("--field", options->Field, "Only that part of the value, as a.b or a.0");
     command->add_flag("--once", options->Once, "One value, then end");
     command->add_option("--rate", options->Rate, "So many a second of each node at most")->check(AboveZero());
-    AddExamples(*command, {"rabit echo uav1/Pose --once",
-                           "rabit echo 'uav*/Pose' --field altitude_m --rate 1", "rabit echo Pose --json"});
+    AddExamples(*command,
+                {"rabit echo uav1/Pose --once", "rabit echo 'uav*/Pose' --field altitude_m --rate 1",
+                 "rabit echo /chatter --type std_msgs/msg/String --idl /opt/ros/humble/share"});
 }
 
 }  // namespace Rabit::Tool

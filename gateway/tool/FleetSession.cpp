@@ -10,6 +10,7 @@
 
 #include "Offers.h"
 #include "Output.h"
+#include "RosNodes.h"
 #include "SafeText.h"
 #include "doctor/MachineChecks.h"
 #include "doctor/NetworkChecks.h"
@@ -54,7 +55,8 @@ void CheckOwnName(const GatewayConfig &config, const CommonOptions &options, Wak
 
 }  // namespace
 
-FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup)
+FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup,
+                           const std::function<void(FleetSession &)> &prepare)
     : _config(config), _options(options), _wakeup(wakeup)
 {
     CheckOwnName(config, options, wakeup);
@@ -62,6 +64,10 @@ FleetSession::FleetSession(const GatewayConfig &config, const CommonOptions &opt
     // The commands themselves report the gateway's warnings where they matter, so these are logged only with
     // --verbose.
     RabitLog::SetLevel(options.Verbose ? RabitLogLevel::Warning : RabitLogLevel::Error);
+    if (prepare)
+    {
+        prepare(*this);
+    }
     try
     {
         auto gateway =
@@ -103,6 +109,8 @@ Gateway::Fleet FleetSession::Fleet() const
     std::sort(fleet.nodes.begin(), fleet.nodes.end(),
               [](const Gateway::NodeStatus &one, const Gateway::NodeStatus &other)
               { return NaturalOrder()(one.node, other.node); });
+    std::erase_if(fleet.problems,
+                  [](const Gateway::Problem &problem) { return problem.subject == RosNodes::Problem; });
     return fleet;
 }
 

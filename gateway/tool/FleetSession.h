@@ -44,13 +44,15 @@ public:
 
     // Throws NetworkError, and ConfigError for a configuration that no network could mend. If --node names
     // this tool, first listens under another name, for 1.5 s as a rule; throws std::runtime_error if a node
-    // has that name.
-    FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup);
+    // has that name. `prepare` is called before the network is joined, so what it connects to messages of
+    // the workspace misses no post. It may call Workspace, Seconds and Notify.
+    FleetSession(const GatewayConfig &config, const CommonOptions &options, Wakeup &wakeup,
+                 const std::function<void(FleetSession &)> &prepare = {});
     ~FleetSession();
 
     FleetExplorer &Explorer() { return *_explorer; }
     RabitWorkspace &Workspace() { return _workspace; }
-    // Both list the nodes in their NaturalOrder.
+    // Both list the nodes in their NaturalOrder. Problems of RosNodes are left out.
     std::vector<Node> Nodes() const;
     Gateway::Fleet Fleet() const;
 

@@ -105,4 +105,23 @@ bool ShowForeignTopics(FleetSession &session, const CommonOptions &options)
     return good;
 }
 
+bool ShowRosNodes(const RosNodes::Names &programs, bool json)
+{
+    std::vector<std::vector<std::string>> rows{{"ROS 2 PROGRAM", "NODES"}};
+    bool good = true;
+    for (const auto &[prefix, nodes] : programs)
+    {
+        if (json)
+        {
+            good = good && Output::Object({{"ros_program", prefix}, {"nodes", nodes}});
+        }
+        rows.push_back({SafeText(prefix), SafeText(NamesText(nodes))});
+    }
+    if (!json && rows.size() > 1)
+    {
+        good = Output::Line("") && Output::Lines(TableLines(rows));
+    }
+    return good;
+}
+
 }  // namespace Rabit::Tool

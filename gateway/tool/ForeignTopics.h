@@ -2,6 +2,7 @@
 
 #include "CommonOptions.h"
 #include "FleetSession.h"
+#include "RosNodes.h"
 
 namespace Rabit::Tool
 {
@@ -10,5 +11,9 @@ namespace Rabit::Tool
 // their states: a table, or an object for each. Nodes that have not answered within 2 s, or within --wait if
 // it is given, are named on standard error. Returns false if standard output is closed.
 bool ShowForeignTopics(FleetSession &session, const CommonOptions &options);
+
+// Shows the participants of ROS 2 and the nodes of each: a table, or an object for each. Returns false if
+// standard output is closed.
+bool ShowRosNodes(const RosNodes::Names &programs, bool json);
 
 }  // namespace Rabit::Tool

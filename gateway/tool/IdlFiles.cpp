@@ -9,11 +9,12 @@
 namespace Rabit::Tool
 {
 
-IdlFiles::IdlFiles(const std::vector<std::string> &files) : _files(files)
+IdlFiles::IdlFiles(const std::vector<std::string> &files, const std::vector<std::string> &folders)
+    : _files(files)
 {
     for (const std::string &file : files)
     {
-        const IdlFile loaded = IdlFile::Load(file);
+        const IdlFile loaded = IdlFile::Load(file, folders);
         if (!loaded.Reason.empty())
         {
             throw ConfigError(loaded.Reason);

@@ -9,12 +9,12 @@
 namespace Rabit::Tool
 {
 
-// Types from IDL files that a person names.
+// Types from IDL files, or .msg files of ROS 2, that a person names.
 class IdlFiles
 {
 public:
-    // Throws ConfigError if one cannot be loaded.
-    explicit IdlFiles(const std::vector<std::string> &files);
+    // Throws ConfigError if one cannot be loaded. Files that they include are also looked for in `folders`.
+    explicit IdlFiles(const std::vector<std::string> &files, const std::vector<std::string> &folders = {});
 
     bool AreNone() const { return _files.empty(); }
     // Returns the type of that name from the first file that has it, or the reason why there is none. The

@@ -24,6 +24,7 @@ struct Options
 {
     CommonOptions Common;
     std::string What;
+    ForeignOptions Foreign;
     double For = 5.0;
 };
 
@@ -94,8 +95,10 @@ int Measure(const Columns &columns, const Options &options, FleetSession &sessio
     for (auto &[node, measured] : nodes)
     {
         measured.Uncertainty = Uncertainty(node, fleet);
-        Json object{{"node", node}, {"message", samples.Message()}, {"values", measured.Values.Count()}};
-        rows.push_back({node, std::to_string(measured.Values.Count())});
+        Json object{{"node", node.empty() ? Json(nullptr) : Json(node)},
+                    {"message", samples.Message()},
+                    {"values", measured.Values.Count()}};
+        rows.push_back({node.empty() ? "-" : node, std::to_string(measured.Values.Count())});
         for (const Column &column : columns)
         {
             object[column.Key] = column.Value(measured);
@@ -123,7 +126,7 @@ void AddMeterCommand(CLI::App &app, Chosen &chosen, const std::string &name, con
 {
     const auto run = [columns](const Options &given, Wakeup &wakeup)
     {
-        return ListenTo(given.Common, given.What, wakeup,
+        return ListenTo(given.Common, given.What, given.Foreign, wakeup,
                         [&](FleetSession &session, Samples &samples)
                         { return Measure(columns, given, session, samples, wakeup); });
     };
@@ -131,6 +134,7 @@ void AddMeterCommand(CLI::App &app, Chosen &chosen, const std::string &name, con
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any node; Pose: of all nodes")
         ->required();
     AddCommonOptions(*command, options->Common, 5.0);
+    AddForeignOptions(*command, options->Foreign);
     command->add_option("--for", options->For, "Seconds to listen")
         ->check(CLI::Range(0.1, 86400.0))
         ->capture_default_str();

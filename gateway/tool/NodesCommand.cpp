@@ -7,6 +7,7 @@
 #include "ForeignTopics.h"
 #include "NodeProblems.h"
 #include "Offers.h"
+#include "RosNodes.h"
 #include "SafeText.h"
 #include "Table.h"
 
@@ -195,13 +196,27 @@ bool IsWhole(FleetSession &session)
                        });
 }
 
-int Show(FleetSession &session, const Options &options, bool &stillRead)
+// Seconds in which participants of ROS 2 are found that are there, and tell the names of their nodes.
+constexpr double RosAnswers = 2.0;
+
+bool ShowForeign(FleetSession &session, const Options &options, const RosNodes &ros)
+{
+    if (!options.Foreign)
+    {
+        return true;
+    }
+    session.WaitUntil(std::min(RosAnswers, options.Common.Wait));
+    return ShowForeignTopics(session, options.Common) &&
+           ShowRosNodes(ros.Of(session.Fleet()), options.Common.Json);
+}
+
+int Show(FleetSession &session, const Options &options, const RosNodes &ros, bool &stillRead)
 {
     const Gateway::Fleet fleet = session.Fleet();
     const std::vector<FleetSession::Node> nodes = session.Nodes();
     const std::vector<Gateway::Problem> problems = ProblemsOf(fleet, nodes);
     stillRead = options.Common.Json ? ShowJson(fleet, nodes, problems) : ShowTable(fleet, nodes, problems);
-    stillRead = stillRead && (!options.Foreign || ShowForeignTopics(session, options.Common));
+    stillRead = stillRead && ShowForeign(session, options, ros);
     return problems.empty() ? Good : ProblemFound;
 }
 
@@ -209,7 +224,13 @@ int Run(const Options &options, Wakeup &wakeup)
 {
     GatewayConfig config = ConfigOf(options.Common);
     config.ProblemsOf = {"*"};
-    FleetSession session(config, options.Common, wakeup);
+    RosNodes ros;
+    if (options.Foreign)
+    {
+        RosNodes::AddTo(config);
+    }
+    FleetSession session(config, options.Common, wakeup,
+                         [&ros](FleetSession &joining) { ros.Attach(joining.Workspace()); });
     session.WaitForEverybody([&session] { return IsWhole(session); });
     if (wakeup.IsInterrupted() && !options.Watch)
     {
@@ -217,6 +238,7 @@ int Run(const Options &options, Wakeup &wakeup)
     }
     if (!session.IsAnybodyThere() && !options.Watch)
     {
+        ShowForeign(session, options, ros);
         return session.NobodyThere();
     }
     bool stillRead = true;
@@ -227,7 +249,7 @@ int Run(const Options &options, Wakeup &wakeup)
         {
             Output::BeginScreen();
         }
-        code = Show(session, options, stillRead);
+        code = Show(session, options, ros, stillRead);
         if (!options.Watch || !stillRead || wakeup.IsInterrupted())
         {
             return stillRead ? code : Good;
@@ -246,8 +268,10 @@ void AddNodesCommand(CLI::App &app, Chosen &chosen)
         AddCommand<Options>(app, chosen, "nodes", "Who is there, what each has, and what is wrong", &Run);
     AddCommonOptions(*command, options->Common, 1.8);
     command->add_flag("--watch", options->Watch, "Show it again each second until Ctrl-C");
-    command->add_flag("--foreign", options->Foreign,
-                      "Also the topics of programs without a gateway, as of ROS 2, that nodes read or write");
+    command->add_flag(
+        "--foreign", options->Foreign,
+        "Also the topics of programs without a gateway, as of ROS 2, that nodes read or write, and the "
+        "names of ROS 2 nodes");
     AddExamples(*command, {"rabit nodes --domain 7", "rabit nodes --watch", "rabit nodes --json --wait 5"});
 }
 

@@ -18,6 +18,7 @@
 #include "Command.h"
 #include "FleetFollower.h"
 #include "FleetSession.h"
+#include "ForeignArguments.h"
 #include "names/ByteSize.h"
 #include "names/ListedNames.h"
 #include "recording/FolderDisk.h"
@@ -36,6 +37,7 @@ struct Options
 {
     CommonOptions Common;
     std::vector<std::string> What = {"*/*"};
+    ForeignOptions Foreign;
     RecordSettings Record{.Folder = "."};
     std::string Name = "fleet";
     double For = FleetSession::Forever;
@@ -169,9 +171,30 @@ void TellOfNew(const std::vector<std::string> &messages)
     }
 }
 
+std::vector<std::string> LocalsOf(const std::vector<ForeignArgument> &topics)
+{
+    std::vector<std::string> names;
+    for (const ForeignArgument &topic : topics)
+    {
+        names.push_back(topic.Rule.Local);
+    }
+    return names;
+}
+
+// True if something has come of a topic of foreign programs.
+bool HasForeign(const FleetSession &session)
+{
+    const Gateway::Fleet fleet = session.Fleet();
+    return std::any_of(fleet.foreign.begin(), fleet.foreign.end(),
+                       [](const Gateway::ForeignTopic &topic) { return topic.samples > 0; });
+}
+
 int Run(const Options &options, Wakeup &wakeup)
 {
     GatewayConfig config = ConfigOf(options.Common);
+    std::vector<std::string> what = options.What;
+    const std::vector<ForeignArgument> topics = TakeForeign(options.Foreign, what);
+    AddForeign(topics, config);
     if (const std::string why = WhyNoFile(options.Record.Folder); !why.empty())
     {
         Output::Talk(why);
@@ -185,19 +208,21 @@ int Run(const Options &options, Wakeup &wakeup)
         RecordingSettings{.Name = options.Name, .Record = *config.Record});
     config.Tap = std::make_shared<QueueStreams>(target, *config.Record);
     target->Inbox().SetMetadata("rabit.node", {{"node", config.Node}, {"kind", "rabit record"}});
-    config.Tool->AsksOf = FleetFollower::NodesOf(options.What);
+    config.Tool->AsksOf = what.empty() ? std::vector{config.Node} : FleetFollower::NodesOf(what);
     if (options.Record.Free < RecordingFiles::LeastMargin)
     {
         Output::Talk("--free: at least 16 MiB of the disk stay free, for the end of the file");
     }
     Progress progress(options);
     bool anybody = false;
-    // The length counts from the first message that is followed.
+    bool isTold = topics.empty();  // why nothing comes of foreign topics
+    // The length counts from the first message that is followed, or that came of a foreign topic.
     std::optional<double> begin;
     {
         FleetSession session(config, options.Common, wakeup);
-        FleetFollower follower(session, options.What, config, config.Record->Except);
+        FleetFollower follower(session, what, config, config.Record->Except);
         MessageTaps taps(config, session.Workspace(), target);
+        TellOfNew(LocalsOf(topics));
         const auto end = [&]
         { return begin ? *begin + options.For : std::max(options.For, options.Common.Wait); };
         while (!wakeup.IsInterrupted() && session.Seconds() < end())
@@ -205,8 +230,9 @@ int Run(const Options &options, Wakeup &wakeup)
             TellOfNew(follower.FollowNew());
             follower.TellOfMissing();
             taps.Look();
-            anybody = anybody || session.IsAnybodyThere();
-            if (!begin && follower.Messages() > 0)
+            const bool hasForeign = !topics.empty() && !begin && HasForeign(session);
+            anybody = anybody || hasForeign || session.IsAnybodyThere();
+            if (!begin && (hasForeign || follower.Messages() > 0))
             {
                 begin = session.Seconds();
             }
@@ -215,6 +241,11 @@ int Run(const Options &options, Wakeup &wakeup)
                 target->End();
                 RemoveFile(options, target->Status());
                 return session.NobodyThere();
+            }
+            if (!isTold && session.Seconds() >= options.Common.Wait)
+            {
+                isTold = true;
+                session.TellProblems();
             }
             progress.Look(target->Status(), session.Seconds());
             // Looks for new names as often as RecorderManager does.
@@ -242,6 +273,7 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
         app, chosen, "record", "What is on the network, into a file that Foxglove opens", &Run, &CheckSizes);
     command->add_option("MESSAGE", options->What, "uav1/Pose; *, ? stand for any; without: all messages");
     AddCommonOptions(*command, options->Common, 5.0);
+    AddForeignOptions(*command, options->Foreign);
     command->add_option("--except", options->Record.Except, "Messages to leave out, as */CameraView");
     command->add_option("--to", options->Record.Folder, "Folder of the files (default: this one)");
     command->add_option("--name", options->Name, "How their names begin (default: fleet)");
@@ -268,8 +300,8 @@ void AddRecordCommand(CLI::App &app, Chosen &chosen)
                      "Bytes of the disk that stay free, as 5GB (default: 1 GiB)")
         ->transform(Size(RecordRanges::Free));
     AddExamples(*command, {"rabit record uav1/Pose 'uav*/Health' --for 60",
-                           "rabit record --except '*/CameraView' --name test",
-                           "rabit record --to flights --split-time 5min --keep 20GB"});
+                           "rabit record --except '*/CameraView' --to flights --split-time 5min --keep 20GB",
+                           "rabit record uav1/Pose /scan --type sensor_msgs/msg/LaserScan"});
 }
 
 }  // namespace Rabit::Tool

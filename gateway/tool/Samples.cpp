@@ -3,6 +3,8 @@
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
+#include <optional>
+#include <tuple>
 #include <utility>
 
 #include "Offers.h"
@@ -40,6 +42,13 @@ const Gateway::PublishedMessage *FindIn(const FleetSession::Node &node, const st
 Samples::Samples(FleetSession &session, const std::string &what) : _session(session)
 {
     std::tie(_pattern, _message) = Split(what);
+}
+
+Samples::Samples(FleetSession &session, const ForeignArgument &topic)
+    : _session(session), _message(topic.Rule.Local), _typeName(topic.Rule.Type)
+{
+    _type.Type = topic.Type;
+    Follow("", topic.Rule.Local);
 }
 
 std::vector<const FleetSession::Node *> Samples::Publishers(
@@ -147,7 +156,7 @@ void Samples::FollowNew()
         const Gateway::PublishedMessage &published = *FindIn(*node, _message);
         if (published.type == _typeName && published.definition == _definition)
         {
-            Follow(node->Name);
+            Follow(node->Name, node->Name + "/" + _message);
         }
         else
         {
@@ -158,11 +167,11 @@ void Samples::FollowNew()
     }
 }
 
-void Samples::Follow(const std::string &node)
+void Samples::Follow(const std::string &node, const std::string &local)
 {
     auto message = std::make_shared<DynamicMessage>(_type.Type);
     _followed[node] = message;
-    if (!_session.Workspace().AddPublishSubscribeMessage(node + "/" + _message, message))
+    if (!_session.Workspace().AddPublishSubscribeMessage(local, message))
     {
         return;
     }
@@ -220,10 +229,21 @@ std::uint64_t Samples::Missed() const
     return _inbox->Missed;
 }
 
-int ListenTo(const CommonOptions &options, const std::string &what, Wakeup &wakeup,
-             const std::function<int(FleetSession &session, Samples &samples)> &body)
+int ListenTo(const CommonOptions &options, const std::string &what, const ForeignOptions &foreign,
+             Wakeup &wakeup, const std::function<int(FleetSession &session, Samples &samples)> &body)
 {
     GatewayConfig config = ConfigOf(options);
+    std::vector<std::string> messages{what};
+    const std::vector<ForeignArgument> topics = TakeForeign(foreign, messages);
+    if (!topics.empty())
+    {
+        AddForeign(topics, config);
+        config.Tool->AsksOf = {config.Node};
+        std::optional<Samples> samples;
+        FleetSession session(config, options, wakeup,
+                             [&](FleetSession &joining) { samples.emplace(joining, topics.front()); });
+        return body(session, *samples);
+    }
     config.Tool->AsksOf = {Split(what).first};  // no other announcements are needed
     FleetSession session(config, options, wakeup);
     Samples samples(session, what);

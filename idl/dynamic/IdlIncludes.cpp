@@ -1,11 +1,17 @@
 #include "dynamic/IdlIncludes.h"
 
 #include "dynamic/ShapeBuilder.h"
+#include "model/Names.h"
+#include "model/Refusals.h"
+#include "ros/MsgReader.h"
+#include "ros/MsgToIdl.h"
 
 #include <rabit/base/WithoutByteOrderMark.h>
 
 #include <filesystem>
 #include <fstream>
+#include <istream>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -16,6 +22,30 @@ namespace
 {
 
 constexpr std::size_t DeepestInclude = 32;
+
+// Returns the IDL of a message of ROS 2, which is in PACKAGE/msg/NAME.msg.
+std::string IdlOfMsg(const std::filesystem::path &path, std::istream &file)
+{
+    const std::string package =
+        std::filesystem::absolute(path).parent_path().parent_path().filename().string();
+    const std::string name = path.stem().string();
+    for (const std::string &word : {package, name})
+    {
+        if (const std::string reason = RabitIdl::WhyNotCpp(word); !reason.empty())
+        {
+            throw Refused(path.string() + ":1: '" + word + "' " + reason);
+        }
+    }
+    const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+    RabitIdl::Refusals refusals;
+    const RabitIdl::MsgFile message = RabitIdl::MsgReader(path.string(), refusals)
+                                          .Read(std::string(WithoutByteOrderMark(text)), package, name);
+    if (!refusals.Empty())
+    {
+        throw Refused(refusals.First());
+    }
+    return RabitIdl::MsgToIdl(message);
+}
 
 class Includer
 {
@@ -35,11 +65,26 @@ public:
         }
         std::error_code error;
         _seen.insert(std::filesystem::canonical(path, error));
+        if (path.extension() == ".msg")
+        {
+            std::istringstream idl(IdlOfMsg(path, file));
+            AddLines(path, idl, depth);
+            return;
+        }
+        Paths.push_back(path.string());
+        AddLines(path, file, depth);
+    }
+
+    std::ostringstream Text;
+    std::vector<std::string> Paths;
+
+private:
+    void AddLines(const std::filesystem::path &path, std::istream &lines, std::size_t depth)
+    {
         const std::string name = path.string();
-        Paths.push_back(name);
         Mark(1, name);
         std::string line;
-        for (std::size_t number = 1; std::getline(file, line); ++number)
+        for (std::size_t number = 1; std::getline(lines, line); ++number)
         {
             if (number == 1)
             {
@@ -74,10 +119,6 @@ public:
         }
     }
 
-    std::ostringstream Text;
-    std::vector<std::string> Paths;
-
-private:
     void Mark(std::size_t line, const std::string &file)
     {
         Text << "#line " << std::to_string(line) << " \"" << file << "\"\n";
@@ -86,10 +127,23 @@ private:
     void Include(const std::filesystem::path &includer, const std::string &name, const std::string &place,
                  std::size_t depth)
     {
-        std::vector<std::filesystem::path> places{includer.parent_path() / name};
-        for (const std::string &folder : _folders)
+        std::vector<std::filesystem::path> folders{includer.parent_path()};
+        folders.insert(folders.end(), _folders.begin(), _folders.end());
+        // Packages of ROS 2 lie beside each other.
+        const std::filesystem::path own = std::filesystem::absolute(includer).parent_path();
+        const bool isRos = own.filename() == "msg";
+        if (isRos)
         {
-            places.push_back(std::filesystem::path(folder) / name);
+            folders.push_back(own.parent_path().parent_path());
+        }
+        std::vector<std::filesystem::path> places;
+        for (const std::filesystem::path &folder : folders)
+        {
+            if (isRos)
+            {
+                places.push_back((folder / name).replace_extension(".msg"));
+            }
+            places.push_back(folder / name);
         }
         for (const std::filesystem::path &path : places)
         {

@@ -82,6 +82,15 @@ TEST_F(ForeignConfigTest, ReadsEveryKeyOfATopicThatIsRead)
     EXPECT_EQ(WireTopicOf(rule), "rt/odometry");
 }
 
+TEST_F(ForeignConfigTest, AToolReadsTopicsAndWritesNone)
+{
+    GatewayConfig config = Load("foreign:\n  - {subscribe: rt/odometry, type: Uav::Pose, as: Odometry}\n");
+    config.Tool.emplace();
+    EXPECT_NO_THROW(ValidateGatewayConfig(config));
+    config.Foreign[0].Way = ForeignRule::Direction::Publish;
+    EXPECT_THROW(ValidateGatewayConfig(config), ConfigError);
+}
+
 TEST_F(ForeignConfigTest, ReadsEveryKeyOfATopicThatIsWritten)
 {
     const ForeignRule rule =

@@ -86,8 +86,8 @@ protected:
 };
 
 constexpr const char *Unread =
-    "uav1: queue Commands: it is full, and its manager takes no messages from it, or too few: those of "
-    "`uav1` wait";
+    "uav1: queue Commands: it is full (10 messages), and its manager takes no messages from it, or too few: "
+    "those of `uav1` wait";
 
 TEST_F(FullQueuesTest, AQueueThatNobodyReadsIsAProblemOnceMessagesWaitForThreeSeconds)
 {
@@ -125,8 +125,8 @@ TEST_F(FullQueuesTest, AFullQueueThatRefusesIsAProblemUntilTenSecondsAfterTheLas
     QueueInfo &lines = Full("Lines");
     LookAfter(0s);
     lines.RefusedAdds = 24200;
-    EXPECT_THAT(LookAfter(3s), ElementsAre("queue Lines: it is full and refuses messages: its manager takes "
-                                           "none, or too few"));
+    EXPECT_THAT(LookAfter(3s), ElementsAre("queue Lines: it is full (10 messages) and refuses messages: its "
+                                           "manager takes none, or too few"));
     EXPECT_EQ(LookAfter(10s - 1ns).size(), 1u);
     EXPECT_THAT(LookAfter(1ns), IsEmpty());
 }

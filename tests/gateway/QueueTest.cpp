@@ -201,8 +201,8 @@ TEST_F(QueueTest, AQueueThatNobodyReadsIsAProblemOfBothSidesUntilItIsRead)
     fleet.RunFor(8s);
     EXPECT_THAT(
         uav.Problems(),
-        HasSubstr("queue MissionControl: it is full, and its manager takes no messages from it, or too few: "
-                  "those of `ground` wait"));
+        HasSubstr("queue MissionControl: it is full (1000 messages), and its manager takes no messages from "
+                  "it, or too few: those of `ground` wait"));
     EXPECT_THAT(ground.Problems(),
                 HasSubstr("send uav1/MissionControl: no more messages may wait, and they are refused: that "
                           "queue is full"));

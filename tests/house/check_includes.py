@@ -89,7 +89,7 @@ ALLOWED = {
     "idl/model": {"idl model", "Cyclone DDS"},
     "idl/generator": {"idl model"},
     "idl/ros": {"idl model", "room idl ros"},
-    "idl/dynamic": {"core", "idl", "Fast-CDR", "idl model", "idl dynamic", "room idl dynamic"},
+    "idl/dynamic": {"core", "idl", "Fast-CDR", "idl model", "idl dynamic", "room idl dynamic", "room idl ros"},
     "idl/dynamic/include": {"core", "idl", "idl dynamic"},
     "idl/dynamic/IdlParser.c": {"room idl dynamic", "Cyclone DDS"},
     "transport/include": {"transport"},

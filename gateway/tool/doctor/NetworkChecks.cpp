@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "doctor/MachineChecks.h"
+#include "doctor/RtpsCall.h"
 
 namespace Rabit::Tool::Doctor
 {
@@ -90,6 +91,28 @@ bool IsNodeHeard(const NetworkFacts &facts, int domain, std::size_t ownSealedSes
            (std::any_of(found->second.begin(), found->second.end(),
                         [](const auto &voice) { return voice.second.AreNodes; }) ||
             SealedSessionsIn(facts, domain).size() > ownSealedSessions);
+}
+
+void NameRosPrograms(const RosNodes::Names &programs, NetworkFacts &facts)
+{
+    const auto addNames = [&programs](std::set<std::string> &labels)
+    {
+        for (const auto &[prefix, nodes] : programs)
+        {
+            if (labels.erase(LabelOfRos(prefix, {})) > 0)
+            {
+                labels.insert(LabelOfRos(prefix, nodes));
+            }
+        }
+    };
+    for (auto &[domain, voices] : facts.Domains)
+    {
+        for (auto &[address, of] : voices)
+        {
+            addNames(of.Names);
+        }
+    }
+    addNames(facts.OnLoopbackAlone);
 }
 
 std::vector<Finding> OfMulticast(const GatewayConfig &config, const std::vector<Interface> &used,

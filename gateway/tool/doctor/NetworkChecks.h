@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "RosNodes.h"
 #include "doctor/Finding.h"
 #include "doctor/MachineFacts.h"
 #include "doctor/NetworkFacts.h"
@@ -20,6 +21,9 @@ std::size_t OwnSealedSessions(const GatewayConfig &config);
 // True if a node was heard in the domain: one without keys, or, by the number of sessions with keys, another
 // one than this program.
 bool IsNodeHeard(const NetworkFacts &facts, int domain, std::size_t ownSealedSessions);
+
+// Adds the names of their nodes to the labels of programs of ROS 2.
+void NameRosPrograms(const RosNodes::Names &programs, NetworkFacts &facts);
 
 // Judges multicast on the interfaces used, out and in. `heardBy`: the nodes that hear this program
 // (NodesThatHear); their addresses are reached, whether they answered the trial or not.

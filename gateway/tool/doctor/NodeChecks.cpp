@@ -1,10 +1,14 @@
 #include "doctor/NodeChecks.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <string_view>
 
 #include "NodeProblems.h"
 #include "Offers.h"
@@ -20,6 +24,8 @@ constexpr double ClockTolerance = 1.0;
 // The loss of fewer beats than this may be chance.
 constexpr std::uint64_t FewBeats = 10;
 constexpr double MuchLost = 0.1;
+// Full queues of a node that a line names.
+constexpr std::size_t MostNamed = 3;
 
 std::string Text(const char *format, double number)
 {
@@ -48,7 +54,65 @@ std::string Many(unsigned messages)
     return std::to_string(messages) + (messages >= most ? " or more" : "");
 }
 
-Finding OfStrain(const std::string &node, const FleetExplorer::Strain &strain)
+struct FullQueue
+{
+    std::string Name;
+    std::uint64_t Messages = 0;  // that wait in it
+};
+
+// Returns the full queues of a node for which messages of `other` wait, the longest first. Beats do not name
+// queues. The node's problems do: `queue NAME: it is full (N messages), ... those of `OTHER` wait`.
+std::vector<FullQueue> FullQueuesOf(const std::string &node, const std::string &other,
+                                    const Gateway::Fleet &fleet)
+{
+    constexpr std::string_view before = "queue ";
+    constexpr std::string_view after = ": it is full (";
+    std::vector<FullQueue> queues;
+    for (const Gateway::NodeStatus &status : fleet.nodes)
+    {
+        if (status.node != node)
+        {
+            continue;
+        }
+        for (const std::string &text : status.problem_texts)
+        {
+            const std::size_t name = text.find(after);
+            if (!text.starts_with(before) || name == std::string::npos ||
+                text.find("`" + other + "`", name) == std::string::npos)
+            {
+                continue;
+            }
+            FullQueue &queue = queues.emplace_back();
+            queue.Name = text.substr(before.size(), name - before.size());
+            const char *const number = text.data() + name + after.size();
+            std::from_chars(number, text.data() + text.size(), queue.Messages);
+        }
+    }
+    std::stable_sort(queues.begin(), queues.end(),
+                     [](const FullQueue &one, const FullQueue &two) { return one.Messages > two.Messages; });
+    return queues;
+}
+
+Finding OfHeldBack(const std::string &node, const std::string &other, const std::vector<FullQueue> &queues)
+{
+    std::string names;
+    for (std::size_t i = 0; i < queues.size() && i < MostNamed; ++i)
+    {
+        names += (i > 0 ? ", `" : "`") + queues[i].Name + "`";
+    }
+    if (queues.size() > MostNamed)
+    {
+        names += " and " + std::to_string(queues.size() - MostNamed) + " more";
+    }
+    const bool isOne = queues.size() <= 1;
+    return {Level::Problem, (isOne ? "queue of " : "queues of ") + node,
+            (names.empty() ? "it" : names) + (isOne ? " is" : " are") + " full, and messages of " + other +
+                " wait",
+            isOne ? "look what keeps its manager from taking them, or give the queue more capacity"
+                  : "look what keeps their managers from taking them, or give the queues more capacity"};
+}
+
+Finding OfStrain(const std::string &node, const FleetExplorer::Strain &strain, const Gateway::Fleet &fleet)
 {
     using Kind = FleetExplorer::Strain::Kind;
     const std::string other = strain.Other.empty() ? "a node that is not heard here" : strain.Other;
@@ -66,8 +130,7 @@ Finding OfStrain(const std::string &node, const FleetExplorer::Strain &strain)
         case Kind::HeldBack:
             break;
     }
-    return {Level::Problem, "queue of " + node, "it is full, and messages of " + other + " wait",
-            "look what keeps its manager from taking them, or give the queue more capacity"};
+    return OfHeldBack(node, other, FullQueuesOf(node, strain.Other, fleet));
 }
 
 }  // namespace
@@ -220,7 +283,7 @@ std::vector<Finding> OfClocks(const std::vector<FleetSession::Node> &nodes, cons
     return findings;
 }
 
-std::vector<Finding> OfLinks(const std::vector<FleetSession::Node> &nodes)
+std::vector<Finding> OfLinks(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet)
 {
     std::vector<Finding> findings;
     std::size_t up = 0;
@@ -233,7 +296,7 @@ std::vector<Finding> OfLinks(const std::vector<FleetSession::Node> &nodes)
         ++up;
         for (const FleetExplorer::Strain &strain : node.Strains)
         {
-            findings.push_back(OfStrain(node.Name, strain));
+            findings.push_back(OfStrain(node.Name, strain, fleet));
         }
     }
     if (findings.empty() && up > 0)

@@ -21,8 +21,9 @@ std::set<std::string> NodesThatHear(const Gateway::Fleet &fleet);
 std::vector<Finding> OfTypes(const std::vector<FleetSession::Node> &nodes);
 // Finds wall clocks that differ from this machine's.
 std::vector<Finding> OfClocks(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet);
-// Finds links that are blocked or in doubt, by what the nodes at their ends say.
-std::vector<Finding> OfLinks(const std::vector<FleetSession::Node> &nodes);
+// Finds links that are blocked or in doubt, by what the nodes at their ends say. Names at most three full
+// queues of a node, the longest first, once the node's own problems have come.
+std::vector<Finding> OfLinks(const std::vector<FleetSession::Node> &nodes, const Gateway::Fleet &fleet);
 // Finds beats that were lost on the way.
 std::vector<Finding> OfLosses(const std::vector<FleetSession::Node> &nodes);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "Table.h"
 #include "common/ParticipantIdentity.h"
 #include "common/RtpsReader.h"
 #include "common/RtpsWriter.h"
@@ -138,7 +139,12 @@ std::string LabelOf(const HeardCall &heard)
         prefix += Digits[byte >> 4];
         prefix += Digits[byte & 15];
     }
-    return (heard.IsRos ? "a program of ROS 2 (" : "a program without a name (") + prefix + ")";
+    return heard.IsRos ? LabelOfRos(prefix, {}) : "a program without a name (" + prefix + ")";
+}
+
+std::string LabelOfRos(const std::string &prefix, const std::vector<std::string> &nodes)
+{
+    return "a program of ROS 2 (" + (nodes.empty() ? "" : NamesText(nodes) + ", ") + prefix + ")";
 }
 
 std::vector<std::uint8_t> MakeCall(const ParticipantId &sender, std::array<std::uint8_t, 4> address,

@@ -32,6 +32,9 @@ std::optional<HeardCall> HeardIn(std::span<const std::uint8_t> datagram);
 // Returns the name of a participant for people. Programs of ROS 2, and those without a name, have their GUID
 // prefix in it, so that each is counted: "a program of ROS 2 (0102030405060708090a0b0c)".
 std::string LabelOf(const HeardCall &heard);
+// The same of a program of ROS 2 by its GUID prefix, as 24 hexadecimal digits, and the names of its nodes,
+// which may be missing: "a program of ROS 2 (/talker /listener, 0102030405060708090a0b0c)".
+std::string LabelOfRos(const std::string &prefix, const std::vector<std::string> &nodes);
 
 // Returns an announcement of a participant without writers and readers, which makes all others announce
 // themselves to it. They forget it after one second.

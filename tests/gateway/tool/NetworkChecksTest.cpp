@@ -8,6 +8,7 @@ namespace Rabit::Tool::Doctor
 namespace
 {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::SizeIs;
@@ -46,6 +47,23 @@ TEST_F(NetworkChecks, MulticastThatGoesEachWayIsGood)
 {
     EXPECT_EQ(Multicast().How, Level::Good);
     EXPECT_EQ(Multicast().Text, "it goes out; answered by 10.0.0.3; heard from 10.0.0.3");
+}
+
+TEST_F(NetworkChecks, ProgramsOfRosHaveTheNamesOfTheirNodes)
+{
+    const std::string named = "0102030405060708090a0b0c";
+    const std::string nameless = "ff02030405060708090a0b0c";
+    const std::string label = "a program of ROS 2 (";
+    facts.Domains[0]["10.0.0.3"].Names = {"ground", label + named + ")", label + nameless + ")"};
+    facts.OnLoopbackAlone = {label + named + ")"};
+    RosNodes::Names programs;
+    programs[named] = {"/talker", "/uav1/camera"};
+    programs[nameless].clear();
+    NameRosPrograms(programs, facts);
+    EXPECT_THAT(
+        facts.Domains[0]["10.0.0.3"].Names,
+        ElementsAre(label + "/talker /uav1/camera, " + named + ")", label + nameless + ")", "ground"));
+    EXPECT_THAT(facts.OnLoopbackAlone, ElementsAre(label + "/talker /uav1/camera, " + named + ")"));
 }
 
 TEST_F(NetworkChecks, ProgramsOnOtherInterfacesCannotBeReached)

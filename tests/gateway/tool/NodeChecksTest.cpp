@@ -91,18 +91,45 @@ TEST(NodeChecks, LinksThatDoNotGetOnAreToldByWhatTheNodesSay)
                     {.What = Kind::InDoubt, .Other = "", .Percent = 0, .Messages = 65535},
                     {.What = Kind::HeldBack, .Other = "ground", .Percent = 0, .Messages = 0}};
     EXPECT_THAT(
-        ProblemLinesOf(OfLinks({node})),
+        ProblemLinesOf(OfLinks({node}, {})),
         ElementsAre("outbox of uav1: that for uav2 is 100 % full, and of late it refused 7",
                     "messages of uav1: 65535 or more to a node that is not heard here in doubt: it restarted "
                     "before it acknowledged",
                     "queue of uav1: it is full, and messages of ground wait"));
 }
 
+TEST(NodeChecks, FullQueuesAreNamedTheLongestFirstAndThreeAtMost)
+{
+    auto node = NodeOf("uav1");
+    node.Strains = {{.What = FleetExplorer::Strain::Kind::HeldBack, .Other = "ground"}};
+    Gateway::Fleet fleet;
+    Gateway::NodeStatus &status = fleet.nodes.emplace_back();
+    status.node = "uav1";
+    const auto add = [&status](const std::string &queue, const std::string &length, const std::string &of)
+    {
+        status.problem_texts.push_back("queue " + queue + ": it is full (" + length +
+                                       " messages), and its manager takes no messages from it, or too few: "
+                                       "those of `" +
+                                       of + "` wait");
+    };
+    add("Camera", "20", "uav2");
+    add("Commands", "100", "ground");
+    EXPECT_THAT(ProblemLinesOf(OfLinks({node}, fleet)),
+                ElementsAre("queue of uav1: `Commands` is full, and messages of ground wait"));
+    add("Lines", "7", "ground");
+    add("Poses", "1000", "ground");
+    add("Video", "30", "ground");
+    add("Words", "8", "ground");
+    EXPECT_THAT(ProblemLinesOf(OfLinks({node}, fleet)),
+                ElementsAre("queues of uav1: `Poses`, `Commands`, `Video` and 2 more are full, and messages "
+                            "of ground wait"));
+}
+
 TEST(NodeChecks, AnOutboxThatFillsAndHasRefusedNothingIsWorthANote)
 {
     auto node = NodeOf("uav1");
     node.Strains = {{.What = FleetExplorer::Strain::Kind::Filling, .Other = "uav2", .Percent = 60}};
-    const std::vector<Finding> findings = OfLinks({node});
+    const std::vector<Finding> findings = OfLinks({node}, {});
     ASSERT_THAT(findings, SizeIs(1));
     EXPECT_EQ(findings.front().How, Level::Note);
     EXPECT_EQ(findings.front().Text, "that for uav2 is 60 % full");
@@ -111,11 +138,11 @@ TEST(NodeChecks, AnOutboxThatFillsAndHasRefusedNothingIsWorthANote)
 TEST(NodeChecks, LinksAreGoodWhereNobodySaysOtherwiseAndOfWhoIsLostNothingIsSaid)
 {
     auto node = NodeOf("uav1");
-    ASSERT_THAT(OfLinks({node}), SizeIs(1));
-    EXPECT_EQ(OfLinks({node}).front().How, Level::Good);
+    ASSERT_THAT(OfLinks({node}, {}), SizeIs(1));
+    EXPECT_EQ(OfLinks({node}, {}).front().How, Level::Good);
     node.Strains.emplace_back();
     node.State = Gateway::NodeState::LOST;
-    EXPECT_THAT(OfLinks({node}), IsEmpty());
+    EXPECT_THAT(OfLinks({node}, {}), IsEmpty());
 }
 
 TEST(NodeChecks, ANodeWhoseAnnouncementDoesNotComeIsTold)

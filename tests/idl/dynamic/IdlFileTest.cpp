@@ -115,6 +115,29 @@ TEST_F(IdlFileTest, AReasonNamesFileAndLine)
     EXPECT_THAT(IdlFile::Load((folder / "none.idl").string()).Reason, EndsWith("none.idl: cannot be read"));
 }
 
+TEST_F(IdlFileTest, AMsgFileOfRosIsItsMessageAndUsesThoseOfPackagesBesideIt)
+{
+    std::filesystem::create_directories(folder / "std_msgs/msg");
+    std::filesystem::create_directories(folder / "builtin_interfaces/msg");
+    Write("builtin_interfaces/msg/Time.msg", "int32 sec\nuint32 nanosec\n");
+    const IdlFile header = IdlFile::Load(
+        Write("std_msgs/msg/Header.msg", "builtin_interfaces/Time stamp\nstring frame_id  # of the data\n"));
+    EXPECT_THAT(header.Reason, IsEmpty());
+    ASSERT_THAT(header.Messages, SizeIs(2));
+    EXPECT_EQ(header.Messages[1]->Name(), "std_msgs::msg::Header");
+    const IdlFile text = IdlFile::Load(Write("std_msgs/msg/String.msg", "string data\n"));
+    EXPECT_THAT(text.Reason, IsEmpty());
+    ASSERT_THAT(text.Messages, SizeIs(1));
+    EXPECT_EQ(text.Messages[0]->RosTypeHash(),
+              "RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18");
+}
+
+TEST_F(IdlFileTest, AReasonInAMsgFileNamesFileAndLine)
+{
+    std::filesystem::create_directories(folder / "a/msg");
+    EXPECT_THAT(IdlFile::Load(Write("a/msg/B.msg", "string data\nwonder\n")).Reason, HasSubstr("B.msg:2: "));
+}
+
 TEST_F(IdlFileTest, AFileThatIncludesItselfIsReadOnce)
 {
     const IdlFile file = IdlFile::Load(Write("a.idl", "#include \"a.idl\"\n@final struct B { long x; };\n"));
