@@ -59,6 +59,7 @@ NodeReports::Kind KindOf(FleetExplorer::Report report)
            : report == Report::LastLines ? NodeReports::Kind::LastLines
            : report == Report::LinesFrom ? NodeReports::Kind::LinesFrom
            : report == Report::Foreign   ? NodeReports::Kind::Foreign
+           : report == Report::Agreement ? NodeReports::Kind::Agreement
                                          : NodeReports::Kind::Echo;
 }
 

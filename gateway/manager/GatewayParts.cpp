@@ -212,8 +212,11 @@ std::unique_ptr<AgreementDriver> GatewayManager::Parts::MakeAgreement(const Rand
     {
         fences.replace_extension(".fence");
     }
+    // If the program has no Claims, the copy gets what they share; the report needs it, too.
+    GatewayConfig config = _config;
+    _claims.emplace(config);
     return std::make_unique<AgreementDriver>(
-        _config, _workspace.GetClock(), _incarnation, std::move(fences), random, _manager.WakeUpHandler(),
+        config, _workspace.GetClock(), _incarnation, std::move(fences), random, _manager.WakeUpHandler(),
         Handlers(),
         AgreementDriver::Network{.Send =
                                      [this](const std::string &node, std::span<const std::uint8_t> frame)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/RabitHandlerThread.h>
+#include <rabit/gateway/Claims.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
 
@@ -157,6 +158,7 @@ private:
     Duration _openedAt{0};
     bool _isOpen = false;
     NodeMembers _members;
+    std::optional<Claims> _claims;                // for the report; empty: no agreement
     std::unique_ptr<AgreementDriver> _agreement;  // null: the configuration has none
     std::vector<std::unique_ptr<GatewayPath>> _paths;
     std::optional<PeersOverPaths> _peers;

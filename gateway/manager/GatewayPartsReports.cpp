@@ -15,6 +15,7 @@
 #include "report/ManagerTroubles.h"
 #include "report/OtherGateways.h"
 #include "report/PathReport.h"
+#include "wire/AgreementReport.h"
 #include "wire/ForeignReport.h"
 
 namespace Rabit
@@ -171,6 +172,12 @@ std::optional<std::string> GatewayManager::Parts::ReportOf(NodeReports::Name nam
             return _config.Reports ? _log.From(name.Argument) : std::nullopt;
         case NodeReports::Kind::Foreign:
             return _config.Reports ? std::optional(ForeignReport::TextOf(_fleet->foreign)) : std::nullopt;
+        case NodeReports::Kind::Agreement:
+            if (!_config.Reports)
+            {
+                return std::nullopt;
+            }
+            return _claims ? AgreementReport::TextOf(AgreementReport::Of(*_config.Agreement, *_claims)) : "";
         case NodeReports::Kind::Echo:
             break;
     }

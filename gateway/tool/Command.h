@@ -77,6 +77,7 @@ void AddKnewCommand(CLI::App &app, Chosen &chosen);
 void AddCheckCommand(CLI::App &app, Chosen &chosen);
 void AddLogCommand(CLI::App &app, Chosen &chosen);
 void AddPingCommand(CLI::App &app, Chosen &chosen);
+void AddClaimsCommand(CLI::App &app, Chosen &chosen);
 void AddTopCommand(CLI::App &app, Chosen &chosen);
 void AddFetchCommand(CLI::App &app, Chosen &chosen);
 void AddDoctorCommand(CLI::App &app, Chosen &chosen);

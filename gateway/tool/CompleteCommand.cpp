@@ -263,7 +263,8 @@ Candidates CandidatesFor(const CLI::App &app, const Words &before, const std::st
     }
     // Nodes that get keys need not be in the network yet.
     const bool isOfKeys = command.get_parent() != nullptr && command.get_parent()->get_parent() != nullptr;
-    if (command.get_name() == "doctor" || command.get_name() == "top" || isOfKeys)
+    static const Candidates withoutArguments = {"claims", "doctor", "top"};
+    if (withoutArguments.contains(command.get_name()) || isOfKeys)
     {
         return {};
     }

@@ -1,14 +1,11 @@
 #include "ForeignTopics.h"
 
-#include <rabit/base/NaturalOrder.h>
-
 #include <nlohmann/json.hpp>
 
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "NodeAnswers.h"
 #include "Output.h"
 #include "SafeText.h"
 #include "Table.h"
@@ -19,41 +16,6 @@ namespace Rabit::Tool
 {
 namespace
 {
-
-using ForeignTopicList = std::vector<Gateway::ForeignTopic>;
-using ForeignOfNodes = std::map<std::string, std::optional<ForeignTopicList>, NaturalOrder>;
-
-ForeignOfNodes AskForForeign(FleetSession &session, double seconds)
-{
-    using Report = FleetExplorer::Report;
-    FleetExplorer &explorer = session.Explorer();
-    ForeignOfNodes nodes;
-    for (const FleetSession::Node &node : session.Nodes())
-    {
-        if (node.State != Gateway::NodeState::LOST)
-        {
-            explorer.AskForReport(node.Name, Report::Foreign);
-            nodes.emplace(node.Name, std::nullopt);
-        }
-    }
-    session.WaitUntil(session.Seconds() + seconds,
-                      [&]
-                      {
-                          bool all = true;
-                          for (auto &[name, topics] : nodes)
-                          {
-                              if (!topics)
-                              {
-                                  const auto answer = explorer.TakeReport(name, Report::Foreign);
-                                  topics = answer ? std::optional(ForeignReport::TopicsIn(answer->Text))
-                                                  : std::nullopt;
-                              }
-                              all = all && topics.has_value();
-                          }
-                          return all;
-                      });
-    return nodes;
-}
 
 nlohmann::ordered_json JsonOfForeign(const std::string &node, const Gateway::ForeignTopic &topic)
 {
@@ -68,19 +30,20 @@ nlohmann::ordered_json JsonOfForeign(const std::string &node, const Gateway::For
 
 bool ShowForeignTopics(FleetSession &session, const CommonOptions &options)
 {
-    const ForeignOfNodes nodes = AskForForeign(session, options.IsWaitGiven ? options.Wait : 2.0);
+    const NodeAnswers nodes = AnswersOfAll(session, FleetExplorer::Report::Foreign,
+                                           session.Seconds() + (options.IsWaitGiven ? options.Wait : 2.0));
     std::vector<std::string> silent;
     std::vector<std::vector<std::string>> rows{
         {"FOREIGN TOPIC", "TYPE", "NODE", "LOCAL", "STATE", "SAMPLES", "REASON"}};
     bool good = true;
-    for (const auto &[name, topics] : nodes)
+    for (const auto &[name, answer] : nodes)
     {
-        if (!topics)
+        if (!answer)
         {
             silent.push_back(name);
             continue;
         }
-        for (const Gateway::ForeignTopic &topic : *topics)
+        for (const Gateway::ForeignTopic &topic : ForeignReport::TopicsIn(*answer))
         {
             if (options.Json)
             {

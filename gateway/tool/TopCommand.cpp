@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "AirText.h"
 #include "Command.h"
 #include "FleetSession.h"
+#include "NodeAnswers.h"
 #include "OneNode.h"
 #include "SafeText.h"
 #include "Table.h"
@@ -24,8 +24,6 @@ namespace TopParts
 {
 namespace
 {
-
-using Report = FleetExplorer::Report;
 
 struct Options
 {
@@ -112,32 +110,11 @@ bool Show(std::vector<Row> rows, bool json)
 // session. This program has a row, too.
 std::vector<Row> Ask(FleetSession &session, double until)
 {
-    FleetExplorer &explorer = session.Explorer();
-    std::map<std::string, std::optional<Gateway::AirStatus>> waiting;
-    for (const FleetSession::Node &node : session.Nodes())
+    std::vector<Row> rows;
+    for (const auto &[name, answer] : AnswersOfAll(session, FleetExplorer::Report::Air, until))
     {
-        if (node.State != Gateway::NodeState::LOST)
-        {
-            explorer.AskForReport(node.Name, Report::Air);
-            waiting.emplace(node.Name, std::nullopt);
-        }
+        rows.emplace_back(name, answer ? AirStatusOf(*answer) : std::nullopt);
     }
-    session.WaitUntil(until,
-                      [&]
-                      {
-                          bool all = true;
-                          for (auto &[name, air] : waiting)
-                          {
-                              if (!air)
-                              {
-                                  const auto answer = explorer.TakeReport(name, Report::Air);
-                                  air = answer ? AirStatusOf(answer->Text) : std::nullopt;
-                              }
-                              all = all && air.has_value();
-                          }
-                          return all;
-                      });
-    std::vector<Row> rows(waiting.begin(), waiting.end());
     const Gateway::Fleet own = session.Fleet();
     rows.emplace_back(own.node, own.air);
     return rows;

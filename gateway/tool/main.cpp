@@ -97,7 +97,7 @@ int RunProgram(int argc, char **argv)
           &AddBytesCommand, &AddAgeCommand,      &AddSendCommand,    &AddPostCommand,     &AddRecordCommand,
           &AddPlayCommand,  &AddInfoCommand,     &AddRecoverCommand, &AddFoxgloveCommand, &AddMergeCommand,
           &AddKnewCommand,  &AddCheckCommand,    &AddLogCommand,     &AddPingCommand,     &AddFetchCommand,
-          &AddTopCommand,   &AddDoctorCommand,   &AddKeysCommand,    &AddLabCommand})
+          &AddTopCommand,   &AddClaimsCommand,   &AddDoctorCommand,  &AddKeysCommand,     &AddLabCommand})
     {
         add(app, chosen);
     }

@@ -1,12 +1,12 @@
 #include "wire/ForeignReport.h"
 
+#include <rabit/base/NumberIn.h>
 #include <rabit/base/Printable.h>
 
-#include <charconv>
 #include <cstddef>
-#include <system_error>
 
 #include "wire/NodeReports.h"
+#include "wire/ReportLines.h"
 
 namespace Rabit::ForeignReport
 {
@@ -28,24 +28,10 @@ std::string LineOf(const Gateway::ForeignTopic &topic)
     return line + '\n';
 }
 
-template <typename Number>
-bool Read(const std::string &text, Number &number)
-{
-    const char *const end = text.data() + text.size();
-    const auto [at, error] = std::from_chars(text.data(), end, number);
-    return error == std::errc() && at == end;
-}
-
 // True if the line is a topic.
 bool Take(std::string_view line, Gateway::ForeignTopic &topic)
 {
-    std::vector<std::string> members;
-    for (std::size_t begin = 0; begin <= line.size() && members.size() <= Members;)
-    {
-        const std::size_t end = line.find('\t', begin);
-        members.push_back(Printable(std::string(line.substr(begin, end - begin)), LongestText));
-        begin = end == std::string_view::npos ? line.size() + 1 : end + 1;
-    }
+    const std::vector<std::string> members = ReportLines::MembersOf(line, Members, LongestText);
     if (members.size() != Members || (members[0] != "written" && members[0] != "read"))
     {
         return false;
@@ -56,8 +42,11 @@ bool Take(std::string_view line, Gateway::ForeignTopic &topic)
     topic.local = members[4];
     topic.qos = members[5];
     topic.reason = members[8];
-    return FromText(members[1], topic.state) && Read(members[6], topic.samples) &&
-           Read(members[7], topic.readers);
+    const auto samples = NumberIn<decltype(topic.samples)>(members[6]);
+    const auto readers = NumberIn<decltype(topic.readers)>(members[7]);
+    topic.samples = samples.value_or(0);
+    topic.readers = readers.value_or(0);
+    return FromText(members[1], topic.state) && samples && readers;
 }
 
 }  // namespace
@@ -82,13 +71,11 @@ std::vector<Gateway::ForeignTopic> TopicsIn(std::string_view report)
     std::vector<Gateway::ForeignTopic> topics;
     while (!report.empty())
     {
-        const std::size_t end = report.find('\n');
         Gateway::ForeignTopic topic;
-        if (Take(report.substr(0, end), topic))
+        if (Take(ReportLines::TakeLine(report), topic))
         {
             topics.push_back(topic);
         }
-        report.remove_prefix(end == std::string_view::npos ? report.size() : end + 1);
     }
     return topics;
 }

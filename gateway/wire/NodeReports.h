@@ -19,7 +19,8 @@ enum class Kind : std::uint8_t
     LastLines = 3,  // the last lines of its log; the argument is their number
     LinesFrom = 4,  // lines of its log; the argument is the number of the first one, modulo 2^32
     Echo = 5,       // nothing: for the round trip; the argument tells one request from another
-    Foreign = 6     // its topics of foreign programs (ForeignReport)
+    Foreign = 6,    // its topics of foreign programs (ForeignReport)
+    Agreement = 7   // the members of its agreement, and the claims that it holds (AgreementReport)
 };
 
 // A report, as TypeQuestion::Definition. A type's hash has this form once in 2^24.
@@ -39,7 +40,7 @@ constexpr std::optional<Name> NameIn(std::uint64_t definition)
     const auto kind = static_cast<Kind>(static_cast<std::uint8_t>(definition >> 32));
     const auto argument = static_cast<std::uint32_t>(definition);
     const bool isKnown =
-        kind >= Kind::Problems && kind <= Kind::Foreign && NameOf(kind, argument) == definition;
+        kind >= Kind::Problems && kind <= Kind::Agreement && NameOf(kind, argument) == definition;
     return isKnown ? std::optional(Name{kind, argument}) : std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 // The reports of nodes about themselves, requested by others: whole nodes on the simulated network.
 #include <gmock/gmock.h>
 #include <rabit/RabitLog.h>
+#include <rabit/gateway/Claims.h>
 #include <rabit/gateway/FleetExplorer.h>
 
 #include <memory>
@@ -201,6 +202,48 @@ TEST_F(NodeReportsTest, TheForeignTopicsOfANodeAreToldWithTheirStates)
     EXPECT_TRUE(ForeignReport::TopicsIn(nothing->Text).empty());
 }
 
+TEST_F(NodeReportsTest, ANodeTellsTheMembersOfItsAgreementAndTheClaimsThatItHolds)
+{
+    GatewayConfig config;
+    config.Node = "uav1";
+    config.Agreement.emplace().Members = {"uav1"};
+    std::optional<Claims> claims;
+    fleet.Add(config, [&claims](SimulatedNode & /*node*/, GatewayConfig &completed)
+              { claims.emplace(completed).Claim("cell 17"); });
+    FleetExplorer &explorer = AddTool();
+    ASSERT_TRUE(fleet.RunUntil([&] { return claims->StillMine("cell 17"); }, 10s));
+    const auto held = Ask(explorer, Report::Agreement);
+    ASSERT_TRUE(held.has_value());
+    EXPECT_EQ(held->Text,
+              "members\t2000\tuav1\nclaim\t" + std::to_string(*claims->FenceOf("cell 17")) + "\tcell 17\n");
+    claims->Release("cell 17");
+    fleet.RunFor(3s);  // answers to repetitions of the first request have come
+    EXPECT_EQ(Ask(explorer, Report::Agreement)->Text, "members\t2000\tuav1\n");
+}
+
+TEST_F(NodeReportsTest, AMemberWhoseProgramHasNoClaimsTellsTheMembersNevertheless)
+{
+    GatewayConfig config;
+    config.Node = "uav1";
+    config.Agreement.emplace().Members = {"uav1", "uav2"};
+    fleet.Add(config);
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    const auto told = Ask(explorer, Report::Agreement);
+    ASSERT_TRUE(told.has_value());
+    EXPECT_EQ(told->Text, "members\t2000\tuav1\tuav2\n");
+}
+
+TEST_F(NodeReportsTest, ANodeWithoutAnAgreementSaysSo)
+{
+    AddAircraft(false);
+    FleetExplorer &explorer = AddTool();
+    fleet.RunFor(2s);
+    const auto told = Ask(explorer, Report::Agreement);
+    ASSERT_TRUE(told.has_value());
+    EXPECT_EQ(told->Text, "");
+}
+
 TEST_F(NodeReportsTest, ANodeThatHasNoLinesYetAnswersWhenThereIsOne)
 {
     AddAircraft(false);
@@ -232,6 +275,7 @@ TEST_F(NodeReportsTest, ANodeWhoseReportsAreOffTellsItsFiguresAndNoWords)
     EXPECT_FALSE(Ask(explorer, Report::LastLines, 20).has_value());
     EXPECT_FALSE(Ask(explorer, Report::LinesFrom, 0).has_value());
     EXPECT_FALSE(Ask(explorer, Report::Foreign).has_value());
+    EXPECT_FALSE(Ask(explorer, Report::Agreement).has_value());
     EXPECT_TRUE(Ask(explorer, Report::Air).has_value());
     EXPECT_TRUE(Ask(explorer, Report::Echo, 1).has_value());
 }

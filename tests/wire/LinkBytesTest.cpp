@@ -239,6 +239,7 @@ TEST(LinkBytes, OfAReportAreTheRecordedOnes)
     EXPECT_EQ(HexOf(std::vector<std::uint8_t>(sealed.begin(), sealed.end())), ReportBytes);
     EXPECT_EQ(NodeReports::Opened(sealed), "7\nline\n");
     EXPECT_EQ(NodeReports::NameOf(NodeReports::Kind::LinesFrom, 9), 0x5265700400000009U);
+    EXPECT_EQ(NodeReports::NameOf(NodeReports::Kind::Agreement), 0x5265700700000000U);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
             print(pose.node, pose.age, pose.value.altitude_m)
 """
 
+from ._agreement import Claim, Claims, SharedTable
 from ._fleet import Fleet
 from ._idl import Namespace, from_bytes, from_json, load_idl, message_class, to_bytes, to_json
 from ._manager import Manager
@@ -18,6 +19,8 @@ from .recordings import Recorded, Recording, Topic, open
 from ._streams import Outcome, Queue, Receipt, Subscription
 
 __all__ = [
+    "Claim",
+    "Claims",
     "Command",
     "ConfigError",
     "Fleet",
@@ -31,6 +34,7 @@ __all__ = [
     "Received",
     "Recorded",
     "Recording",
+    "SharedTable",
     "Subscription",
     "Topic",
     "Union",

@@ -15,13 +15,15 @@ class Manager:
     """A manager beside those in C++: a thread that runs `unit_of_work` and sleeps.
 
     It runs once in each `period` (seconds), and whenever it is woken: by a post of a message in `wake_on`
-    (`{"uav1/Pose": idl.Uav.Pose}`), or by `wake()`. Without a period it runs once in a second at least. An exception is
-    logged with its traceback, and reported in the manager's status; the manager goes on.
+    (`{"uav1/Pose": idl.Uav.Pose}`), by a change of the claims or the table if `wake_on_agreement` is true, or by `wake()`.
+    Without a period it runs once in a second at least. An exception is logged with its traceback, and reported in the
+    manager's status; the manager goes on.
     """
 
     name = ""  # empty: the name of the class
     period = 0.0
     wake_on: dict[str, Any] = {}
+    wake_on_agreement = False
 
     node: Node
     _core: Any = None
@@ -58,3 +60,5 @@ class Manager:
                 self._core.wake_on_queue(node._queues[message]._core)
             else:
                 self._core.wake_on(message, _rabit.type_of_class(cls))
+        if self.wake_on_agreement:
+            self._core.wake_on_agreement(core.agreement())

@@ -12,6 +12,7 @@ from types import TracebackType
 from typing import Any
 
 from . import _async, _rabit
+from ._agreement import Claims, SharedTable
 from ._fleet import Fleet
 from ._manager import Manager
 from ._messages import Message
@@ -153,6 +154,16 @@ class Node:
     def fleet(self) -> Fleet:
         """The other nodes and what keeps data from flowing, as of now."""
         return Fleet(self._core.fleet())
+
+    @property
+    def claims(self) -> Claims:
+        """The claims of this node. Raises ConfigError without `agreement=` or that section of the file."""
+        return Claims(self._core)
+
+    @property
+    def table(self) -> SharedTable:
+        """The table that this node shares with all others that have an `agreement`. Raises ConfigError likewise."""
+        return SharedTable(self._core)
 
     def messages(self) -> list[str]:
         """The names of the messages here, and of those that other nodes announce."""

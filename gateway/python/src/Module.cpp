@@ -42,6 +42,7 @@ PYBIND11_MODULE(_rabit, module)
                                                                   : Level::Off);
                });
     Rabit::Python::DefineMessages(module);
+    Rabit::Python::DefineAgreement(module);
     Rabit::Python::DefineNode(module);
     Rabit::Python::DefineRecordings(module);
 }

@@ -6,6 +6,7 @@
 namespace Rabit::Python
 {
 
+void DefineAgreement(pybind11::module_ &module);
 void DefineMessages(pybind11::module_ &module);
 void DefineNode(pybind11::module_ &module);
 void DefineRecordings(pybind11::module_ &module);

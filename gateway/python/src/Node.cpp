@@ -1,12 +1,9 @@
 #include "Node.h"
 
-#include <rabit/RabitLog.h>
-#include <rabit/backfill/BackfillManager.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 #include <rabit/recording/RecorderManager.h>
-#include <rabit/transport/TransportFactory.h>
 
 #include <dlfcn.h>
 #include <unistd.h>
@@ -24,8 +21,12 @@ namespace Rabit::Python
 {
 
 Node::Node(GatewayConfig config)
-    : _config(std::move(config)), _process(getpid()), _parts(std::make_shared<Parts>())
+    : _config(std::move(config)),
+      _process(getpid()),
+      _parts(std::make_shared<Parts>()),
+      _agreed(_config.Agreement ? std::make_shared<Agreement>(_config) : nullptr)
 {
+    _parts->Agreed = _agreed;
     // The names have their types from now on: other uses of them are refused where the program makes them.
     const auto add = [this](const std::string &name, const std::string &type)
     { _parts->Workspace.AddPublishSubscribeMessage(name, MessageTypeRegistry::Find(type)->CreateShared()); };
@@ -151,144 +152,6 @@ void Node::AddLibrary(const std::string &path)
     }
     const py::gil_scoped_release released;
     add(*parts.Reactor, _config, parts.Workspace);
-}
-
-void Node::Start()
-{
-    const auto held = Use();
-    Parts &parts = *held;
-    const py::gil_scoped_release released;
-    const std::lock_guard starting(parts.Changing);
-    if (parts.IsEnding)
-    {
-        throw StoppedError();
-    }
-    if (parts.HasStarted)
-    {
-        throw std::runtime_error("the node `" + Name() + "` runs already");
-    }
-    // All that may throw comes first, and touches a copy: a start that failed leaves nothing behind.
-    GatewayConfig config = _config;
-    ValidateTransportName(config, AvailableTransports(), KnownTransports());
-    std::unique_ptr<RecorderManager> recorder;
-    if (config.Record)
-    {
-        recorder = std::make_unique<RecorderManager>(config, parts.Workspace);
-    }
-    std::unique_ptr<BackfillManager> backfill;
-    if (BackfillManager::IsUsed(config))
-    {
-        backfill = std::make_unique<BackfillManager>(config, recorder.get(), parts.Workspace);
-    }
-    auto gateway =
-        std::make_unique<GatewayManager>(config, TransportsOf(config, MakeTransport), parts.Workspace);
-    std::promise<void> ready;
-    parts.Runner = std::thread([&parts, name = Name(), isReady = ready.get_future()]() mutable
-                               { RunReactor(parts, name, std::move(isReady)); });
-    FleetExplorer &explorer = gateway->Explorer();
-    explorer.SetOnChange([&parts] { AttachAll(parts); });
-    parts.Recorder = recorder.get();
-    parts.Reactor->AddManager(std::move(recorder));
-    parts.Reactor->AddManager(std::move(backfill));
-    parts.Reactor->AddManager(std::move(gateway));
-    parts.Workspace.AddPublishSubscribeMessage(FleetMessageNameOf(config), parts.Fleet);
-    parts.Reactor->SetHandleSignals(false);
-    {
-        // Before the managers run, since one may stop the node at once.
-        const py::gil_scoped_acquire gil;
-        for (PythonManager *manager : parts.Managers)
-        {
-            manager->Hold();
-        }
-        parts.Explorer = &explorer;
-        parts.HasStarted = true;
-    }
-    ready.set_value();
-}
-
-void Node::RunReactor(Parts &parts, const std::string &name, std::future<void> isReady)
-{
-    try
-    {
-        isReady.get();
-        parts.Reactor->Run();
-    }
-    catch (const std::exception &error)
-    {
-        RabitLog::Write(RabitLogLevel::Error,
-                        "the node `" + name + "` cannot run: " + error.what() + "; make another one");
-    }
-    // The managers may have ended by themselves.
-    parts.IsEnding = true;
-    CloseStreams(parts);
-    parts.HasEnded = true;
-    parts.Ended.Notify();
-}
-
-void Node::CloseStreams(Parts &parts)
-{
-    {
-        const std::lock_guard lock(parts.Mutex);
-        for (const auto &weak : parts.Subscriptions)
-        {
-            if (const auto subscription = weak.lock())
-            {
-                subscription->Close();
-            }
-        }
-        parts.Subscriptions.clear();
-    }
-    for (const auto &queue : parts.Queues)
-    {
-        queue->Close();
-    }
-}
-
-bool Node::Stop()
-{
-    if (!_parts || getpid() != _process)
-    {
-        return true;
-    }
-    const auto parts = _parts;
-    parts->IsEnding = true;
-    CloseStreams(*parts);
-    if (PythonManager::IsCalledIn(parts->Workspace))
-    {
-        const py::gil_scoped_release released;
-        parts->Reactor->ShutdownAllManagers();
-        return false;
-    }
-    {
-        const py::gil_scoped_release released;
-        const std::lock_guard starting(parts->Changing);
-        if (!parts->Reactor)
-        {
-            return true;  // another thread has just ended it
-        }
-        parts->Reactor->ShutdownAllManagers();
-    }
-    // Managers may wait for the GIL, and use the node until they have ended.
-    parts->Ended.Wait(std::nullopt, [&parts] { return parts->HasEnded || !parts->Runner.joinable(); });
-    const py::gil_scoped_release released;
-    const std::lock_guard ending(parts->Changing);
-    if (!parts->Reactor)
-    {
-        return true;
-    }
-    if (parts->Runner.joinable())
-    {
-        parts->Runner.join();
-    }
-    {
-        const py::gil_scoped_acquire gil;
-        _parts.reset();
-    }
-    const std::unique_lock lock(parts->InUse);
-    parts->Explorer = nullptr;
-    parts->Posted.clear();
-    parts->Reactor.reset();
-    return true;
 }
 
 void Node::AttachAll(Parts &parts)
@@ -516,6 +379,12 @@ std::vector<std::string> Node::Messages()
         }
     }
     return {names.begin(), names.end()};
+}
+
+std::shared_ptr<Agreement> Node::Agreed()
+{
+    // A second one is refused, with the section that the configuration lacks.
+    return _agreed ? _agreed : std::make_shared<Agreement>(_config);
 }
 
 }  // namespace Rabit::Python

@@ -21,6 +21,7 @@
 #include <thread>
 #include <vector>
 
+#include "Agreement.h"
 #include "InboundQueue.h"
 #include "PythonManager.h"
 #include "Receipt.h"
@@ -84,6 +85,13 @@ public:
     bool Flush(double seconds);
     // The names of the messages here, and those of other nodes as they announce them.
     std::vector<std::string> Messages();
+    // The claims and the shared table, also once the node has ended. Throws ConfigError if the configuration
+    // has no `agreement`.
+    std::shared_ptr<Agreement> Agreed();
+    // Throw as the other functions do once the node has ended, and in a forked process. CheckNetwork throws
+    // before Start, too.
+    void Check() { static_cast<void>(Use()); }
+    void CheckNetwork() { static_cast<void>(UseNetwork()); }
 
 private:
     struct Parts
@@ -106,6 +114,7 @@ private:
         std::vector<std::weak_ptr<Subscription>> Subscriptions;  // guarded
         std::vector<std::shared_ptr<InboundQueue>> Queues;
         std::map<std::string, double> Expires;  // by address
+        std::shared_ptr<Agreement> Agreed;      // null: the configuration has none
     };
 
     // Holding what they return keeps the parts alive while the GIL is released.
@@ -122,7 +131,8 @@ private:
 
     GatewayConfig _config;
     const pid_t _process;
-    std::shared_ptr<Parts> _parts;  // until the managers have ended
+    std::shared_ptr<Parts> _parts;             // until the managers have ended
+    const std::shared_ptr<Agreement> _agreed;  // null: the configuration has none
     std::atomic<std::uint64_t> _nextReceipt{1};
     const std::shared_ptr<Outcomes> _outcomes = std::make_shared<Outcomes>();
 };

@@ -11,6 +11,7 @@
 #include "Module.h"
 #include "Node.h"
 #include "Values.h"
+#include "WaitableModule.h"
 
 namespace Rabit::Python
 {
@@ -60,6 +61,7 @@ GatewayConfig ReadConfig(const std::string &file, const std::string &node, const
     replace("parameters", &GatewayConfig::Parameters);
     replace("record", &GatewayConfig::Record);
     replace("fetch", &GatewayConfig::Fetch);
+    replace("agreement", &GatewayConfig::Agreement);
     replace("reports", &GatewayConfig::Reports);
     ValidateGatewayConfig(config);
     return config;
@@ -135,17 +137,12 @@ void DefineReceived(py::module_ &module)
              { return "<" + self.Queue + " " + py::cast<std::string>(py::repr(self.Value)) + ">"; });
 }
 
-// The functions of both: what comes, waited for in a thread or by an event loop.
+// The functions of both streams.
 template <class Stream, class Class>
 void DefineStream(Class &stream)
 {
+    DefineWaits<Stream>(stream);
     stream.def("take", &Stream::Take)
-        .def("wait", [](Stream &self, std::optional<double> seconds)
-             { return self.Ready().Wait(seconds, [&self] { return self.IsReady(); }); })
-        .def("arm", [](Stream &self) { self.Ready().Arm(); })
-        .def("drain", [](Stream &self) { self.Ready().Drain(); })
-        .def_property_readonly("fd", [](Stream &self) { return self.Ready().Fd(); })
-        .def_property_readonly("is_ready", &Stream::IsReady)
         .def_property_readonly("is_closed", &Stream::IsClosed)
         .def("close", &Stream::Close);
 }
@@ -195,7 +192,9 @@ void DefineNode(py::module_ &module)
                  self.Use().WakeUpManagerOnMessagePost(message);
              })
         .def("wake_on_queue", [](const ManagerCore &self, const InboundQueue &from)
-             { self.Use().WakeUpManagerOnEnqueue(from.Local()); });
+             { self.Use().WakeUpManagerOnEnqueue(from.Local()); })
+        .def("wake_on_agreement",
+             [](const ManagerCore &self, Agreement &agreement) { agreement.ConnectChanged(self.Wake); });
 
     py::class_<Node, std::shared_ptr<Node>>(module, "NodeCore")
         .def(py::init([](const std::string &file, const std::string &node, const std::string &text,
@@ -239,6 +238,9 @@ void DefineNode(py::module_ &module)
         .def("fleet", [](Node &self) { return ValueOf(*ClassOf("Rabit::Gateway::Fleet"), self.Fleet()); })
         .def("flush", &Node::Flush)
         .def("messages", &Node::Messages)
+        .def("agreement", &Node::Agreed)
+        .def("check", &Node::Check)
+        .def("check_network", &Node::CheckNetwork)
         .def_property_readonly("outcomes_fd", [](Node &self) { return self.KnownOutcomes()->Ready().Fd(); })
         .def("arm_outcomes", [](Node &self) { self.KnownOutcomes()->Ready().Arm(); })
         .def("take_outcomes",

@@ -84,8 +84,10 @@ public:
         LastLines,  // the last lines of its log, as many as the argument says
         LinesFrom,  // its log from the line with that number on; the request waits for such a line
         Echo,       // empty, for the round trip; requested once, with another argument each time
-        Foreign  // its topics of foreign programs, a line each with tabs between: `read` or `written`, state,
-                 // topic, type, local name, QoS, samples, readers, reason
+        Foreign,    // its topics of foreign programs, a line each with tabs between: `read` or `written`,
+                    // state, topic, type, local name, QoS, samples, readers, reason
+        Agreement   // lines with tabs between: `members`, the lease in ms and the sorted members, then for
+                    // each claim that it holds `claim`, fence, name; empty: it has no agreement
     };
     struct Answer
     {

@@ -122,10 +122,38 @@ def a_node_that_sends_no_files_is_named_without_a_try(rabit):
         assert not list(pathlib.Path(folder).iterdir()), done
 
 
+def the_members_and_their_claims_are_shown(rabit):
+    with tempfile.TemporaryDirectory(prefix="rabit_claims_") as folder, harness.Processes() as processes:
+        config = aircraft_config(folder)
+        config.write_text(config.read_text() + "agreement: {members: [uav7, uav8]}\n")
+
+        def start(node):
+            processes.start([rabit.uav, "--config", config, "--node", node, "--domain", rabit.domain, "--transport",
+                             rabit.transport])
+        start("uav7")
+
+        def alone():
+            done = rabit.run("claims", "--wait", "4")
+            return done if "uav7 uav8" in done.stdout else None
+        done = harness.until(alone)
+        assert done.returncode == 1 and done.stdout.splitlines() == [
+            "no claim is held",
+            "members uav7 uav8; lease 2.0 s; 1 of 2 told their claims",
+            "! node uav8: it is a member of the agreement and is not heard",
+            "! agreement of uav7: 1 of 2 members told that they have this list, and a majority is 2"], done
+        start("uav8")
+
+        def whole():
+            rows, done = rabit.objects("claims", "--wait", "4")
+            return rows if done.returncode == 0 else None
+        assert harness.until(whole) == [{"members": ["uav7", "uav8"], "lease_s": 2.0, "nodes": ["uav7", "uav8"]}]
+
+
 TESTS = [the_own_problems_of_a_node_are_listed_and_diagnosed, the_last_lines_of_a_log_are_shown_with_the_node_running_on,
          a_log_is_followed_while_it_is_written, a_node_is_pinged,
          a_node_that_is_not_there_is_neither_pinged_nor_has_it_a_log, the_channel_is_shown_by_node_and_class,
-         nodes_are_offered_to_a_shell, a_node_that_sends_no_files_is_named_without_a_try]
+         nodes_are_offered_to_a_shell, a_node_that_sends_no_files_is_named_without_a_try,
+         the_members_and_their_claims_are_shown]
 
 
 if __name__ == "__main__":
