@@ -4,6 +4,7 @@
 #include <rabit/base/Backoff.h>
 #include <rabit/base/Earliest.h>
 #include <rabit/base/Fnv1a.h>
+#include <rabit/base/ListedNames.h>
 #include <rabit/base/LittleEndian.h>
 #include <rabit/base/NaturalOrder.h>
 #include <rabit/base/NumberIn.h>
@@ -90,6 +91,14 @@ TEST(BaseExample, TextOfTheNetworkStaysOneLineOfALog)
     EXPECT_EQ(Rabit::Printable("a name that is too long", 9), "a name...");
 }
 // [/printable]
+
+TEST(BaseExample, NamesAreListedForPeople)
+{
+    EXPECT_EQ(Rabit::ListedNames(std::vector<std::string>{"Pose", "Health"}), "`Pose`, `Health`");
+    const std::vector<int> cells{1, 2, 3, 4, 5, 6, 7, 8};
+    EXPECT_EQ(Rabit::ListedNames(cells, [](int cell) { return std::to_string(cell); }),
+              "`1`, `2`, `3`, `4`, `5`, `6` and 2 more");
+}
 
 TEST(BaseExample, NamesInNaturalOrderAndTextWithoutAMark)
 {

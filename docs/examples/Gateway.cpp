@@ -1,6 +1,8 @@
 // A gateway made by hand, its configuration in code, and what a tool sees through it.
 #include <gtest/gtest.h>
 #include <rabit/RabitReactor.h>
+#include <rabit/gateway/AirCost.h>
+#include <rabit/gateway/ByteSize.h>
 #include <rabit/gateway/CheckTransportSettings.h>
 #include <rabit/gateway/ClassRates.h>
 #include <rabit/gateway/ConfigError.h>
@@ -9,8 +11,12 @@
 #include <rabit/gateway/GatewayManager.h>
 #include <rabit/gateway/GatewayTap.h>
 #include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/gateway/PanelRule.h>
+#include <rabit/gateway/PresenceTraffic.h>
+#include <rabit/gateway/QosProfileWords.h>
 #include <rabit/gateway/RandomSource.h>
+#include <rabit/gateway/SchemaText.h>
 #include <rabit/gateway/TrafficClass.h>
 #include <rabit/testing/SimulatedFleet.h>
 #include <rabit/transport/TransportFactory.h>
@@ -20,6 +26,7 @@
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -124,6 +131,15 @@ TEST(GatewayExample, AToolAsksForWhatNodesAnnounce)
 }
 // [/explorer]
 
+TEST(GatewayExample, AToolReadsTheReportOnForeignTopics)
+{
+    const auto topics = Rabit::FleetExplorer::ForeignTopicsIn(
+        "read\tUP\trt/chatter\tString_\tChatter\tbest effort\t7\t1\t\nany other line\n");
+    ASSERT_EQ(topics.size(), 1u);
+    EXPECT_EQ(topics[0].topic, "rt/chatter");
+    EXPECT_EQ(topics[0].samples, 7u);
+}
+
 // [tap]
 // Sees each queue message of a gateway, for instance to record it.
 class Tap : public Rabit::GatewayTap
@@ -181,6 +197,29 @@ TEST(GatewayExample, TheRateOfEachClassIsInTheFleetMessage)
 }
 // [/rates]
 
+// [cost]
+TEST(GatewayExample, ASampleCostsItsHeadersToo)
+{
+    const Rabit::AirCost cost(1400);  // bytes of the largest datagram, as `max_datagram`
+    EXPECT_EQ(cost.Of(100), 188u);    // IPv4 and UDP 28, RTPS 20, time stamp 12, data 24, encapsulation 4
+    EXPECT_EQ(cost.BodyWithin(188, false), 100u);
+}
+// [/cost]
+
+// [presence]
+TEST(GatewayExample, AToolPlansThePresenceOfANode)
+{
+    Rabit::GatewayConfig config;
+    config.Node = "uav1";
+    const Rabit::PresenceTraffic presence = Rabit::PresenceTrafficOf(config, 1);
+    EXPECT_EQ(presence.BeatBytes, 108u);
+    EXPECT_EQ(presence.BeatPeriod, 500ms);
+    EXPECT_EQ(presence.AnnouncementPeriod, 10s);
+    config.Radio.Budget = 2560;  // bytes a second
+    EXPECT_EQ(Rabit::PresenceTrafficOf(config, 1).AnnouncementPeriod, 30s);
+}
+// [/presence]
+
 // [panel]
 TEST(GatewayExample, AViewerShowsAMessageOnItsMap)
 {
@@ -193,6 +232,24 @@ TEST(GatewayExample, AViewerShowsAMessageOnItsMap)
     EXPECT_NO_THROW(Rabit::ValidateGatewayConfig(config));
 }
 // [/panel]
+
+// [words]
+TEST(GatewayExample, AToolReadsTheWordsOfConfigurations)
+{
+    EXPECT_TRUE(Rabit::IsNodeName("uav1"));
+    EXPECT_TRUE(Rabit::IsMessageName("uav1/Pose"));
+    EXPECT_TRUE(Rabit::MatchesPattern("uav*", "uav1"));
+    EXPECT_FALSE(Rabit::CoversPattern("uav?", "uav*"));
+    EXPECT_EQ(Rabit::ProfileOf("telemetry"), Rabit::QosProfile::Telemetry);
+    EXPECT_EQ(Rabit::ParseByteSize("64MB", Rabit::RecordRanges::Memory), 64'000'000u);
+    EXPECT_THROW(Rabit::ParseByteSize("64", Rabit::RecordRanges::Memory), std::invalid_argument);
+}
+// [/words]
+
+TEST(GatewayExample, AViewerReadsAMemberThatIsNamedAsAKeyword)
+{
+    EXPECT_EQ(Rabit::SchemaText("struct Label { string _String; };"), "struct Label { string String; };");
+}
 
 TEST(GatewayExample, ChanceComesFromTheSystemUnlessATestGivesIt)
 {

@@ -1,4 +1,4 @@
-#include "air/AirCost.h"
+#include <rabit/gateway/AirCost.h>
 
 #include <algorithm>
 

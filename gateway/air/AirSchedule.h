@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/gateway/AirCost.h>
 #include <rabit/gateway/TrafficClass.h>
 
 #include <array>
@@ -11,7 +12,6 @@
 #include <vector>
 
 #include "air/AirBudget.h"
-#include "air/AirCost.h"
 #include "air/AirStream.h"
 #include "air/ClassShares.h"
 #include "air/FairQueue.h"

@@ -1,6 +1,7 @@
 #include <rabit/backfill/BackfillManager.h>
 #include <rabit/gateway/Fleet.h>
 #include <rabit/gateway/GatewayManager.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/gateway/RandomSource.h>
 #include <rabit/recording/RecorderManager.h>
 
@@ -24,7 +25,6 @@
 #include "backfill/RecordingWatch.h"
 #include "backfill/Requester.h"
 #include "backfill/SeriesStreams.h"
-#include "names/NamePattern.h"
 #include "recording/RecordingTarget.h"
 
 namespace Rabit

@@ -1,11 +1,12 @@
 #include "backfill/FolderPosts.h"
 
+#include <rabit/mcap/RecordedChannel.h>
+
 #include <algorithm>
 #include <limits>
 #include <set>
 
 #include "backfill/RecordedSeries.h"
-#include "recording/mcap/RecordedChannel.h"
 
 namespace Rabit::Backfill
 {

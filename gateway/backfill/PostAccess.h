@@ -1,10 +1,9 @@
 #pragma once
 
 #include <rabit/gateway/GatewayConfig.h>
+#include <rabit/gateway/NamePattern.h>
 
 #include <string>
-
-#include "names/NamePattern.h"
 
 namespace Rabit::Backfill
 {

@@ -1,6 +1,6 @@
 #include "backfill/RecordedSeries.h"
 
-#include "recording/mcap/RecordedChannel.h"
+#include <rabit/mcap/RecordedChannel.h>
 
 namespace Rabit::Backfill
 {

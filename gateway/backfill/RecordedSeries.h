@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/mcap/McapRecords.h>
+
 #include <charconv>
 #include <cstdint>
 #include <optional>
@@ -7,7 +9,6 @@
 #include <system_error>
 
 #include "backfill/Series.h"
-#include "recording/mcap/McapRecords.h"
 
 namespace Rabit::Backfill
 {

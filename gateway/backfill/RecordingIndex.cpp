@@ -1,6 +1,10 @@
 #include "backfill/RecordingIndex.h"
 
 #include <rabit/base/LittleEndian.h>
+#include <rabit/mcap/ChunkReader.h>
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/RecordCodec.h>
+#include <rabit/mcap/RecordScanner.h>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -15,10 +19,6 @@
 #include <system_error>
 
 #include "recording/RecordingName.h"
-#include "recording/mcap/ChunkReader.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/RecordCodec.h"
-#include "recording/mcap/RecordScanner.h"
 
 namespace Rabit::Backfill
 {

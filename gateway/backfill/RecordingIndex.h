@@ -1,5 +1,8 @@
 #pragma once
 
+#include <rabit/mcap/FileSource.h>
+#include <rabit/mcap/McapRecords.h>
+
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -9,9 +12,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "recording/mcap/FileSource.h"
-#include "recording/mcap/McapRecords.h"
 
 namespace Rabit::Backfill
 {

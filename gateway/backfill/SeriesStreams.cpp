@@ -1,5 +1,7 @@
 #include "backfill/SeriesStreams.h"
 
+#include <rabit/gateway/QosProfileWords.h>
+#include <rabit/gateway/SchemaText.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
@@ -8,8 +10,6 @@
 #include <algorithm>
 
 #include "backfill/CredibleTime.h"
-#include "names/QosProfileWords.h"
-#include "names/SchemaText.h"
 
 namespace Rabit::Backfill
 {

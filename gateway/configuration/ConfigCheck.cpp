@@ -1,11 +1,10 @@
 #include "configuration/ConfigCheck.h"
 
 #include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/NamePattern.h>
 
 #include <algorithm>
 #include <set>
-
-#include "names/NamePattern.h"
 
 namespace Rabit
 {

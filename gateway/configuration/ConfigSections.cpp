@@ -1,9 +1,10 @@
 #include "configuration/ConfigSections.h"
 
+#include <rabit/gateway/QosProfileWords.h>
+
 #include <algorithm>
 #include <stdexcept>
 
-#include "names/QosProfileWords.h"
 #include "names/TrafficClassWords.h"
 
 namespace Rabit

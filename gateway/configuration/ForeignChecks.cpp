@@ -1,10 +1,11 @@
+#include <rabit/gateway/NamePattern.h>
+
 #include <algorithm>
 #include <map>
 
 #include "configuration/ConfigCheck.h"
 #include "configuration/ForeignEntries.h"
 #include "names/ForeignNames.h"
-#include "names/NamePattern.h"
 
 namespace Rabit
 {

@@ -1,6 +1,7 @@
 #include <rabit/gateway/LoadGatewayConfig.h>
 
 #include <rabit/base/WithoutByteOrderMark.h>
+#include <rabit/gateway/QosProfileWords.h>
 #include <rabit/transport/Transport.h>
 
 #include <algorithm>
@@ -16,7 +17,6 @@
 #include "configuration/ParameterSection.h"
 #include "configuration/ValidateGatewayConfig.h"
 #include "configuration/YamlMap.h"
-#include "names/QosProfileWords.h"
 #include "names/TrafficClassWords.h"
 
 namespace Rabit

@@ -1,9 +1,10 @@
+#include <rabit/gateway/NamePattern.h>
+
 #include <algorithm>
 #include <map>
 
 #include "air/AirSchedule.h"
 #include "configuration/ConfigCheck.h"
-#include "names/NamePattern.h"
 
 namespace Rabit
 {

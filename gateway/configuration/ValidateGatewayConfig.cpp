@@ -1,6 +1,7 @@
 #include "configuration/ValidateGatewayConfig.h"
 
 #include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 #include <rabit/idl/NearestWord.h>
 #include <rabit/transport/Transport.h>
@@ -12,7 +13,6 @@
 
 #include "configuration/ConfigCheck.h"
 #include "configuration/ForeignEntries.h"
-#include "names/NamePattern.h"
 #include "wire/Announcements.h"
 
 namespace Rabit

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/gateway/ByteSize.h>
+
 #include <yaml-cpp/yaml.h>
 
 #include <chrono>
@@ -12,7 +14,6 @@
 #include <vector>
 
 #include "configuration/ConfigSections.h"
-#include "names/ByteSize.h"
 
 namespace Rabit
 {

@@ -1,4 +1,4 @@
-#include "keys/AccessToken.h"
+#include <rabit/keys/AccessToken.h>
 
 #include <openssl/rand.h>
 

@@ -1,5 +1,7 @@
 #include "keys/BulletinStore.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <exception>
 #include <optional>
 #include <utility>
@@ -7,7 +9,6 @@
 #include "envelope/Bulletin.h"
 #include "envelope/EpochSecrets.h"
 #include "keys/KeyFiles.h"
-#include "keys/KeysError.h"
 #include "keys/MemberFiles.h"
 
 namespace Rabit::Keys

@@ -1,5 +1,7 @@
 #include "keys/FleetAuthority.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -11,7 +13,6 @@
 #include "envelope/Bulletin.h"
 #include "envelope/KeyDerivation.h"
 #include "keys/KeyFiles.h"
-#include "keys/KeysError.h"
 #include "keys/MemberFolder.h"
 #include "keys/NodeName.h"
 

@@ -1,5 +1,7 @@
 #include "keys/FleetRecords.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <map>
@@ -7,7 +9,6 @@
 #include "envelope/Bulletin.h"
 #include "envelope/VerifyingKey.h"
 #include "keys/KeyFiles.h"
-#include "keys/KeysError.h"
 #include "keys/MemberFiles.h"
 #include "keys/NodeName.h"
 

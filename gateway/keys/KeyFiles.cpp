@@ -1,5 +1,7 @@
 #include "keys/KeyFiles.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -11,8 +13,6 @@
 #include <filesystem>
 #include <span>
 #include <system_error>
-
-#include "keys/KeysError.h"
 
 namespace Rabit::Keys
 {

@@ -1,5 +1,8 @@
 #include "keys/MemberFolder.h"
 
+#include <rabit/keys/KeysError.h>
+#include <rabit/keys/NodeOfKeys.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -9,7 +12,6 @@
 
 #include "envelope/Bulletin.h"
 #include "keys/KeyFiles.h"
-#include "keys/KeysError.h"
 #include "keys/MemberPermissions.h"
 #include "keys/NodeFolders.h"
 #include "keys/NodeName.h"
@@ -173,6 +175,11 @@ MemberKeys MemberFolder::Keys() const
     keys.Store = [store](std::uint16_t epoch, std::span<const std::uint8_t> bulletin)
     { return store->Add(epoch, bulletin); };
     return keys;
+}
+
+std::string NodeOfKeys(const std::string &folder)
+{
+    return MemberFolder(folder).Certificate().Name;
 }
 
 }  // namespace Rabit::Keys

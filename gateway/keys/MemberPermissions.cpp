@@ -1,10 +1,10 @@
 #include "keys/MemberPermissions.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <algorithm>
 #include <optional>
 #include <utility>
-
-#include "keys/KeysError.h"
 
 namespace Rabit::Keys
 {

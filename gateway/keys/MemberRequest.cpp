@@ -1,5 +1,7 @@
 #include "keys/MemberRequest.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +11,6 @@
 
 #include "keys/Armour.h"
 #include "keys/KeyFiles.h"
-#include "keys/KeysError.h"
 #include "keys/MemberFiles.h"
 #include "keys/NodeFolders.h"
 #include "keys/NodeName.h"

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <rabit/base/NaturalOrder.h>
+#include <rabit/keys/KeysError.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -9,7 +10,6 @@
 #include <filesystem>
 #include <system_error>
 
-#include "keys/KeysError.h"
 #include "keys/NodeName.h"
 
 namespace Rabit::Keys

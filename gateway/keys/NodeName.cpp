@@ -1,8 +1,8 @@
 #include "keys/NodeName.h"
 
-#include <algorithm>
+#include <rabit/keys/KeysError.h>
 
-#include "keys/KeysError.h"
+#include <algorithm>
 
 namespace Rabit::Keys
 {

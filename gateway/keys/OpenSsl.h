@@ -1,6 +1,8 @@
 // Owners of OpenSSL's objects, and its errors.
 #pragma once
 
+#include <rabit/keys/KeysError.h>
+
 #include <openssl/bio.h>
 #include <openssl/evp.h>
 #include <openssl/x509.h>
@@ -8,8 +10,6 @@
 #include <memory>
 #include <string>
 #include <string_view>
-
-#include "keys/KeysError.h"
 
 namespace Rabit::Keys
 {

@@ -1,5 +1,7 @@
 #include "keys/Passphrase.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <fcntl.h>
 #include <openssl/evp.h>
 #include <unistd.h>
@@ -9,7 +11,6 @@
 #include <memory>
 
 #include "keys/KeyFiles.h"
-#include "keys/KeysError.h"
 
 namespace Rabit::Keys
 {

@@ -1,11 +1,11 @@
 #include "keys/Secret.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <openssl/crypto.h>
 
 #include <algorithm>
 #include <string>
-
-#include "keys/KeysError.h"
 
 namespace Rabit::Keys
 {

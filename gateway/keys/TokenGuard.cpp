@@ -1,4 +1,4 @@
-#include "keys/TokenGuard.h"
+#include <rabit/keys/TokenGuard.h>
 
 #include <openssl/crypto.h>
 #include <openssl/sha.h>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/gateway/AirCost.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/transport/Transport.h>
 
@@ -12,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "air/AirCost.h"
 #include "gateway.idl.h"
 #include "mirrors/TopicPublisher.h"
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/gateway/AirCost.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/transport/Transport.h>
 
@@ -11,7 +12,6 @@
 #include <optional>
 #include <vector>
 
-#include "air/AirCost.h"
 #include "air/AirSchedule.h"
 #include "air/CapacityEstimate.h"
 #include "air/DiscoveryBurst.h"

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "clocks/GpsTime.h"
+#include "wire/ForeignReport.h"
 
 namespace Rabit
 {
@@ -109,6 +110,11 @@ std::optional<FleetExplorer::Answer> Exploration::TakeReport(const std::string &
     const std::lock_guard lock(_mutex);
     const auto found = _reports.find({node, KindOf(what)});
     return found == _reports.end() ? std::nullopt : std::exchange(found->second.second, std::nullopt);
+}
+
+std::vector<Gateway::ForeignTopic> FleetExplorer::ForeignTopicsIn(std::string_view report)
+{
+    return ForeignReport::TopicsIn(report);
 }
 
 void Exploration::LookForSubscribers(const std::vector<std::string> &messages)

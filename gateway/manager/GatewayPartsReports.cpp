@@ -2,6 +2,7 @@
 // reports.
 #include <rabit/RabitLog.h>
 #include <rabit/gateway/GatewayTap.h>
+#include <rabit/gateway/NamePattern.h>
 
 #include <algorithm>
 #include <ctime>
@@ -9,7 +10,6 @@
 #include <utility>
 
 #include "manager/GatewayParts.h"
-#include "names/NamePattern.h"
 #include "report/Diagnosis.h"
 #include "report/FleetReport.h"
 #include "report/ManagerTroubles.h"

@@ -1,13 +1,13 @@
 #include "manager/GatewayPath.h"
 
 #include <rabit/RabitManager.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "manager/TransportSettingsOf.h"
-#include "names/NamePattern.h"
 #include "report/FleetReport.h"
 #include "report/Loneliness.h"
 #include "wire/Announcements.h"

@@ -1,12 +1,12 @@
 #include "manager/NodeSecurity.h"
 
 #include <rabit/base/UtcText.h>
+#include <rabit/keys/KeysError.h>
 
 #include <ctime>
 #include <filesystem>
 #include <utility>
 
-#include "keys/KeysError.h"
 #include "keys/MemberFolder.h"
 #include "names/ForeignNames.h"
 #include "wire/GatewayTopics.h"

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <rabit/gateway/AirCost.h>
 #include <rabit/gateway/GatewayConfig.h>
 
 #include <atomic>
@@ -16,7 +17,6 @@
 #include <utility>
 #include <vector>
 
-#include "air/AirCost.h"
 #include "presence/Presence.h"
 #include "queues/LinkDriver.h"
 #include "types/KnownTexts.h"

@@ -1,13 +1,13 @@
 #include "mirrors/Subscriptions.h"
 
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/QosProfileWords.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "names/NamePattern.h"
-#include "names/QosProfileWords.h"
 #include "names/TypeDefinition.h"
 #include "wire/Announcements.h"
 #include "wire/Offers.h"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <rabit/RabitMessage.h>
+#include <rabit/gateway/AirCost.h>
 #include <rabit/gateway/GatewayConfig.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/transport/Transport.h>
@@ -12,7 +13,6 @@
 #include <optional>
 #include <string>
 
-#include "air/AirCost.h"
 #include "clocks/SourceClock.h"
 #include "gateway.idl.h"
 #include "mirrors/InstanceWriter.h"

@@ -1,6 +1,7 @@
 #include "mirrors/TopicSubscriber.h"
 
 #include <rabit/RabitLog.h>
+#include <rabit/gateway/NamePattern.h>
 
 #include <algorithm>
 #include <numeric>
@@ -8,7 +9,6 @@
 
 #include "clocks/GpsTime.h"
 #include "mirrors/StateVersion.h"
-#include "names/NamePattern.h"
 #include "presence/PeerTable.h"
 #include "wire/GatewayTopics.h"
 

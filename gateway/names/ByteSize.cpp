@@ -1,4 +1,4 @@
-#include "names/ByteSize.h"
+#include <rabit/gateway/ByteSize.h>
 
 #include <rabit/base/NumberIn.h>
 

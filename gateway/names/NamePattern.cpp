@@ -1,4 +1,4 @@
-#include "names/NamePattern.h"
+#include <rabit/gateway/NamePattern.h>
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "names/SchemaText.h"
+#include <rabit/gateway/SchemaText.h>
 
 #include <algorithm>
 #include <cctype>

@@ -1,9 +1,10 @@
 #include "presence/PresenceInbox.h"
 
+#include <rabit/gateway/NamePattern.h>
+
 #include <algorithm>
 #include <utility>
 
-#include "names/NamePattern.h"
 #include "presence/Whereabouts.h"
 #include "wire/Announcements.h"
 #include "wire/BeatFormat.h"

@@ -1,9 +1,9 @@
 #include "presence/QueueAcceptance.h"
 
-#include <algorithm>
+#include <rabit/base/ListedNames.h>
+#include <rabit/gateway/NamePattern.h>
 
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
+#include <algorithm>
 
 namespace Rabit
 {

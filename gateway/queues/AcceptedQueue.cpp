@@ -1,12 +1,12 @@
 #include "queues/AcceptedQueue.h"
 
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
 #include <typeinfo>
 #include <utility>
 
-#include "names/NamePattern.h"
 #include "names/TypeDefinition.h"
 
 namespace Rabit

@@ -1,9 +1,9 @@
 // The receiving half of LinkDriver: frames of other nodes, on the transport's threads.
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/gateway/links/LinkFrameCodec.h>
 
 #include <utility>
 
-#include "names/NamePattern.h"
 #include "presence/PeerTable.h"
 #include "queues/LinkDriver.h"
 #include "wire/LinkSampleCodec.h"

@@ -1,11 +1,12 @@
 #include "recording/FolderDisk.h"
 
-#include <fcntl.h>
+#include <rabit/mcap/FileSink.h>
+
 #include <sys/statvfs.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <filesystem>
+#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -14,34 +15,16 @@ namespace Rabit
 namespace
 {
 
-class PosixFile final : public RecordingDisk::File
+class DiskFile final : public RecordingDisk::File
 {
 public:
-    explicit PosixFile(int descriptor) : _descriptor(descriptor) {}
-    ~PosixFile() override { ::close(_descriptor); }
+    explicit DiskFile(const std::string &path) : _sink(path) {}
 
-    bool Write(Mcap::ByteView bytes) override
-    {
-        while (!bytes.empty())
-        {
-            const ssize_t written = ::write(_descriptor, bytes.data(), bytes.size());
-            if (written < 0 && errno == EINTR)
-            {
-                continue;
-            }
-            if (written <= 0)
-            {
-                return false;
-            }
-            bytes = bytes.subspan(static_cast<std::size_t>(written));
-        }
-        return true;
-    }
-
-    bool Sync() override { return ::fdatasync(_descriptor) == 0; }
+    bool Write(Mcap::ByteView bytes) override { return _sink.Write(bytes); }
+    bool Sync() override { return _sink.Sync(); }
 
 private:
-    const int _descriptor;
+    Mcap::FileSink _sink;
 };
 
 }  // namespace
@@ -50,32 +33,14 @@ FolderDisk::FolderDisk(std::string folder) : _folder(std::move(folder)) {}
 
 std::unique_ptr<RecordingDisk::File> FolderDisk::Create(const std::string &name, std::string &reason)
 {
-    std::error_code error;
-    std::filesystem::create_directories(_folder, error);
-    if (error)
+    try
     {
-        reason = "the folder " + _folder + " cannot be made: " + error.message();
-        return nullptr;
+        return std::make_unique<DiskFile>(_folder + "/" + name);
     }
-    const std::string path = _folder + "/" + name;
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0640);
-    if (descriptor < 0)
+    catch (const std::runtime_error &error)
     {
-        reason = path + ": " + std::generic_category().message(errno);
+        reason = error.what();
         return nullptr;
-    }
-    SyncFolder();
-    return std::make_unique<PosixFile>(descriptor);
-}
-
-// Syncs the folder, so that the name of a new file survives a power loss, too.
-void FolderDisk::SyncFolder() const
-{
-    const int descriptor = ::open(_folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (descriptor >= 0)
-    {
-        static_cast<void>(::fsync(descriptor));
-        ::close(descriptor);
     }
 }
 

@@ -17,8 +17,6 @@ public:
     std::optional<std::uint64_t> FreeBytes() override;
 
 private:
-    void SyncFolder() const;
-
     const std::string _folder;
 };
 

@@ -2,6 +2,9 @@
 
 #include <rabit/ManagerControlMessage.h>
 #include <rabit/ManagerStatusMessage.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/QosProfileWords.h>
+#include <rabit/gateway/SchemaText.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
@@ -11,9 +14,6 @@
 #include <optional>
 #include <utility>
 
-#include "names/NamePattern.h"
-#include "names/QosProfileWords.h"
-#include "names/SchemaText.h"
 #include "recording/JsonStreams.h"
 
 namespace Rabit

@@ -1,5 +1,7 @@
 #include "recording/QueueStreams.h"
 
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/SchemaText.h>
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
@@ -7,8 +9,6 @@
 
 #include <utility>
 
-#include "names/NamePattern.h"
-#include "names/SchemaText.h"
 #include "recording/JsonStreams.h"
 
 namespace Rabit

@@ -2,6 +2,7 @@
 #include <rabit/RabitVersion.h>
 #include <rabit/gateway/Fleet.h>
 #include <rabit/gateway/GatewayManager.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/recording/RecorderManager.h>
 
 #include <nlohmann/json.hpp>
@@ -14,7 +15,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "names/NamePattern.h"
 #include "recording/FolderDisk.h"
 #include "recording/JsonStreams.h"
 #include "recording/MessageTaps.h"

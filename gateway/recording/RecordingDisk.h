@@ -1,12 +1,12 @@
 #pragma once
 
+#include <rabit/mcap/ByteSink.h>
+
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "recording/mcap/ByteSink.h"
 
 namespace Rabit
 {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/mcap/McapWriter.h>
+
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -13,7 +15,6 @@
 #include "recording/RecordingDisk.h"
 #include "recording/RecordingInbox.h"
 #include "recording/RecordingSettings.h"
-#include "recording/mcap/McapWriter.h"
 
 namespace Rabit
 {

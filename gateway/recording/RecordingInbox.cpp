@@ -1,9 +1,9 @@
 #include "recording/RecordingInbox.h"
 
+#include <rabit/mcap/McapWriter.h>
+
 #include <stdexcept>
 #include <utility>
-
-#include "recording/mcap/McapWriter.h"
 
 namespace Rabit
 {

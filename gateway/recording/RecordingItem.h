@@ -1,9 +1,9 @@
 #pragma once
 
+#include <rabit/mcap/McapRecords.h>
+
 #include <cstdint>
 #include <string>
-
-#include "recording/mcap/McapRecords.h"
 
 namespace Rabit
 {

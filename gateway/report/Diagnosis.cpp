@@ -1,14 +1,14 @@
 #include "report/Diagnosis.h"
 
+#include <rabit/base/ListedNames.h>
 #include <rabit/gateway/Fleet.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/QosProfileWords.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
 
 #include "mirrors/Subscriptions.h"
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
-#include "names/QosProfileWords.h"
 #include "names/TypeDefinition.h"
 #include "wire/Offers.h"
 

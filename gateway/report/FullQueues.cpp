@@ -1,6 +1,6 @@
 #include "report/FullQueues.h"
 
-#include "names/ListedNames.h"
+#include <rabit/base/ListedNames.h>
 
 namespace Rabit
 {

@@ -1,16 +1,14 @@
 #include "AirPlan.h"
 
+#include <rabit/gateway/AirCost.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/PresenceTraffic.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iterator>
 #include <numeric>
-
-#include "air/AirCost.h"
-#include "manager/TransportSettingsOf.h"
-#include "names/NamePattern.h"
-#include "presence/BeatRate.h"
-#include "wire/BeatFormat.h"
 
 namespace Rabit::Tool
 {
@@ -77,19 +75,12 @@ private:
 
     void AddPresence()
     {
-        const auto states = static_cast<std::size_t>(
-            std::count_if(_config.Publish.begin(), _config.Publish.end(),
-                          [](const PublishRule &rule) { return rule.Qos == QosProfile::State; }));
         const std::size_t copies = std::max<std::size_t>(1, Copies(_others.size()));
-        const auto beat = static_cast<double>(_cost.Of(
-            states == 0
-                ? BeatFormat::Empty
-                : BeatFormat::WithNews + BeatFormat::State * std::min(states, BeatFormat::MostStates)));
-        const auto period = BeatRate::PeriodOf(beat * static_cast<double>(copies), _config.Radio.Budget,
-                                               _config.Radio.SlowestBeat);
-        _plan.Items.push_back({"beats", beat, 1.0 / Seconds(period), copies});
-        _plan.Items.push_back({"discovery", Announcement,
-                               1.0 / Seconds(TransportSettingsOf(_config, 0).AnnouncementPeriod), copies});
+        const PresenceTraffic presence = PresenceTrafficOf(_config, copies);
+        _plan.Items.push_back(
+            {"beats", static_cast<double>(presence.BeatBytes), 1.0 / Seconds(presence.BeatPeriod), copies});
+        _plan.Items.push_back(
+            {"discovery", Announcement, 1.0 / Seconds(presence.AnnouncementPeriod), copies});
     }
 
     std::optional<double> SizeOf(const std::string &node, const std::string &name,

@@ -1,4 +1,6 @@
 // rabit claims: which node holds which claim.
+#include <rabit/base/ListedNames.h>
+
 #include <chrono>
 #include <string>
 #include <vector>
@@ -10,7 +12,6 @@
 #include "OneNode.h"
 #include "SafeText.h"
 #include "Table.h"
-#include "names/ListedNames.h"
 
 namespace Rabit::Tool
 {

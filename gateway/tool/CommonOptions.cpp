@@ -2,14 +2,13 @@
 
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/keys/NodeOfKeys.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
-
-#include "keys/MemberFolder.h"
 
 namespace Rabit::Tool
 {
@@ -108,7 +107,7 @@ GatewayConfig ConfigOf(const CommonOptions &options)
                                        [](const GatewayConfig &path) { return path.Security.has_value(); });
         if (with != paths.end())
         {
-            config.Node = Keys::MemberFolder(with->Security->Keys).Certificate().Name;
+            config.Node = Keys::NodeOfKeys(with->Security->Keys);
         }
     }
     config.StateDir.clear();

@@ -1,5 +1,6 @@
 // rabit complete -- WORD...: lists candidates for the last of the words, for the shells (completion/).
 #include <rabit/gateway/ConfigError.h>
+#include <rabit/gateway/QosProfileWords.h>
 #include <rabit/transport/TransportFactory.h>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 #include "Command.h"
 #include "FleetSession.h"
 #include "Offers.h"
-#include "names/QosProfileWords.h"
 
 namespace Rabit::Tool
 {

@@ -1,5 +1,6 @@
 #include "FleetCheck.h"
 
+#include <rabit/base/ListedNames.h>
 #include <rabit/base/NaturalOrder.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/idl/NearestWord.h>
@@ -10,7 +11,6 @@
 #include <utility>
 
 #include "WantCheck.h"
-#include "names/ListedNames.h"
 
 namespace Rabit::Tool::FleetCheck
 {

@@ -1,12 +1,13 @@
 #include "FleetFollower.h"
 
+#include <rabit/gateway/NamePattern.h>
+
 #include <algorithm>
 
 #include "FleetType.h"
 #include "Offers.h"
 #include "Output.h"
 #include "Samples.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {

@@ -1,5 +1,6 @@
 #include "ForeignArguments.h"
 
+#include <rabit/base/ListedNames.h>
 #include <rabit/gateway/ConfigError.h>
 
 #include <CLI/CLI.hpp>
@@ -12,7 +13,6 @@
 
 #include "IdlFiles.h"
 #include "names/ForeignNames.h"
-#include "names/ListedNames.h"
 
 namespace Rabit::Tool
 {

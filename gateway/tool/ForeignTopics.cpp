@@ -1,5 +1,7 @@
 #include "ForeignTopics.h"
 
+#include <rabit/base/ListedNames.h>
+
 #include <nlohmann/json.hpp>
 
 #include <string>
@@ -9,8 +11,6 @@
 #include "Output.h"
 #include "SafeText.h"
 #include "Table.h"
-#include "names/ListedNames.h"
-#include "wire/ForeignReport.h"
 
 namespace Rabit::Tool
 {
@@ -43,7 +43,7 @@ bool ShowForeignTopics(FleetSession &session, const CommonOptions &options)
             silent.push_back(name);
             continue;
         }
-        for (const Gateway::ForeignTopic &topic : ForeignReport::TopicsIn(*answer))
+        for (const Gateway::ForeignTopic &topic : FleetExplorer::ForeignTopicsIn(*answer))
         {
             if (options.Json)
             {

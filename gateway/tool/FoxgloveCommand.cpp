@@ -1,11 +1,12 @@
 // rabit foxglove: shows the messages of the network live in Foxglove.
+#include <rabit/keys/AccessToken.h>
+
 #include <string>
 #include <vector>
 
 #include "Command.h"
 #include "FleetFollower.h"
 #include "FleetSession.h"
-#include "keys/AccessToken.h"
 #include "live/LiveServer.h"
 #include "live/LiveTaps.h"
 

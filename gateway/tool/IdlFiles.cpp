@@ -1,10 +1,9 @@
 #include "IdlFiles.h"
 
+#include <rabit/base/ListedNames.h>
 #include <rabit/dynamic/IdlFile.h>
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/idl/NearestWord.h>
-
-#include "names/ListedNames.h"
 
 namespace Rabit::Tool
 {

@@ -1,6 +1,8 @@
 // rabit info: the contents of recordings.
 #include <rabit/base/NaturalOrder.h>
 #include <rabit/base/UtcText.h>
+#include <rabit/mcap/FileSource.h>
+#include <rabit/mcap/McapContents.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -11,8 +13,6 @@
 #include "PlayedFiles.h"
 #include "SafeText.h"
 #include "Table.h"
-#include "recording/mcap/FileSource.h"
-#include "recording/mcap/McapContents.h"
 #include "recording/replay/RecordingLacks.h"
 
 namespace Rabit::Tool

@@ -1,4 +1,6 @@
 // rabit keys check: the problems of keys, and what they let nodes do.
+#include <rabit/keys/KeysError.h>
+
 #include <algorithm>
 #include <ctime>
 #include <filesystem>
@@ -9,7 +11,6 @@
 #include "KeysConfig.h"
 #include "SafeText.h"
 #include "keys/FleetAuthority.h"
-#include "keys/KeysError.h"
 #include "keys/KeysFinding.h"
 #include "keys/MemberCheck.h"
 #include "keys/MemberFolder.h"

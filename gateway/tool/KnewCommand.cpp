@@ -1,7 +1,11 @@
 // rabit knew: the values that nodes had of each other's messages, and their ages.
+#include <rabit/base/ListedNames.h>
 #include <rabit/base/NaturalOrder.h>
 #include <rabit/base/UtcText.h>
 #include <rabit/dynamic/DynamicType.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/mcap/FileSource.h>
+#include <rabit/mcap/MessageCursor.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -16,10 +20,6 @@
 #include "SafeText.h"
 #include "Table.h"
 #include "TimeText.h"
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
-#include "recording/mcap/FileSource.h"
-#include "recording/mcap/MessageCursor.h"
 #include "recording/merge/AgePlot.h"
 #include "recording/merge/ChannelChunks.h"
 #include "recording/merge/Knowledge.h"

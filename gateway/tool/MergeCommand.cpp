@@ -1,5 +1,6 @@
 // rabit merge: the recordings of several nodes on one time line.
 #include <rabit/RabitVersion.h>
+#include <rabit/mcap/FileSource.h>
 
 #include <array>
 #include <memory>
@@ -9,7 +10,6 @@
 #include "SafeText.h"
 #include "Table.h"
 #include "Wakeup.h"
-#include "recording/mcap/FileSource.h"
 #include "recording/merge/Merger.h"
 
 namespace Rabit::Tool

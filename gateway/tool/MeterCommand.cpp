@@ -1,5 +1,6 @@
 // rabit hz, rabit bytes, rabit age: what values of a message measure, a line for each node.
 #include <rabit/base/NaturalOrder.h>
+#include <rabit/gateway/AirCost.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +12,6 @@
 #include "Samples.h"
 #include "Table.h"
 #include "TimeText.h"
-#include "air/AirCost.h"
 
 namespace Rabit::Tool
 {

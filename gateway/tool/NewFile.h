@@ -1,11 +1,11 @@
 #pragma once
 
+#include <rabit/mcap/FileSink.h>
+
 #include <filesystem>
-#include <memory>
 #include <stdexcept>
 #include <string>
-
-#include "recording/FolderDisk.h"
+#include <system_error>
 
 namespace Rabit::Tool
 {
@@ -15,24 +15,16 @@ class NewFile
 {
 public:
     // Throws std::runtime_error if the name is taken, or the file cannot be made.
-    explicit NewFile(const std::filesystem::path &path)
-        : _path(path), _disk(path.has_parent_path() ? path.parent_path().string() : ".")
-    {
-        std::string reason;
-        _file = _disk.Create(path.filename().string(), reason);
-        if (_file == nullptr)
-        {
-            throw std::runtime_error(reason);
-        }
-    }
+    explicit NewFile(const std::filesystem::path &path) : _path(path), _sink(path.string()) {}
 
-    RecordingDisk::File &Sink() { return *_file; }
+    Mcap::ByteSink &Sink() { return _sink; }
     // Removes the file, and throws std::runtime_error, if not all of it was written.
     void Finish(bool isWritten, bool wasStopped = false)
     {
-        if (wasStopped || !isWritten || !_file->Sync())
+        if (wasStopped || !isWritten || !_sink.Sync())
         {
-            _disk.Remove(_path.filename().string());
+            std::error_code ignored;
+            std::filesystem::remove(_path, ignored);
             throw std::runtime_error(_path.string() + (wasStopped
                                                            ? ": was not finished, and is removed"
                                                            : ": the disk takes no more; it is removed"));
@@ -41,8 +33,7 @@ public:
 
 private:
     const std::filesystem::path _path;
-    FolderDisk _disk;
-    std::unique_ptr<RecordingDisk::File> _file;
+    Mcap::FileSink _sink;
 };
 
 }  // namespace Rabit::Tool

@@ -1,5 +1,7 @@
 #include "Offers.h"
 
+#include <rabit/base/ListedNames.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/idl/NearestWord.h>
 
 #include <boost/algorithm/string/join.hpp>
@@ -9,8 +11,6 @@
 #include <tuple>
 
 #include "Table.h"
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Tool::Offers
 {

@@ -1,8 +1,10 @@
 // rabit play: plays recordings to the network.
 #include <unistd.h>
 
+#include <rabit/base/ListedNames.h>
 #include <rabit/base/NumberIn.h>
 #include <rabit/base/UtcText.h>
+#include <rabit/gateway/NamePattern.h>
 
 #include <algorithm>
 #include <chrono>
@@ -16,8 +18,6 @@
 #include "ReplayFleet.h"
 #include "ReplayNetwork.h"
 #include "TimeText.h"
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {

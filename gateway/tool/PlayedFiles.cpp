@@ -1,13 +1,14 @@
 #include "PlayedFiles.h"
 
+#include <rabit/base/ListedNames.h>
+#include <rabit/gateway/NamePattern.h>
+
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "Output.h"
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {

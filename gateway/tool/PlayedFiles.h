@@ -1,10 +1,11 @@
 #pragma once
 
+#include <rabit/mcap/FileSource.h>
+
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "recording/mcap/FileSource.h"
 #include "recording/replay/RecordedMessages.h"
 #include "recording/replay/ReplayPlan.h"
 

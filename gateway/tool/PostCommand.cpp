@@ -1,5 +1,8 @@
 // rabit post: posts a message as a node of that name.
+#include <rabit/base/ListedNames.h>
 #include <rabit/dynamic/DynamicMessage.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/QosProfileWords.h>
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
@@ -10,9 +13,6 @@
 #include "FleetType.h"
 #include "IdlFiles.h"
 #include "Offers.h"
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
-#include "names/QosProfileWords.h"
 
 namespace Rabit::Tool
 {

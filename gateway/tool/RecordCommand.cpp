@@ -1,5 +1,7 @@
 // rabit record: records the messages of the network into files.
 #include <rabit/RabitClock.h>
+#include <rabit/base/ListedNames.h>
+#include <rabit/gateway/ByteSize.h>
 
 #include <unistd.h>
 
@@ -19,8 +21,6 @@
 #include "FleetFollower.h"
 #include "FleetSession.h"
 #include "ForeignArguments.h"
-#include "names/ByteSize.h"
-#include "names/ListedNames.h"
 #include "recording/FolderDisk.h"
 #include "recording/MessageTaps.h"
 #include "recording/QueueStreams.h"

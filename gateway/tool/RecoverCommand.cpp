@@ -1,5 +1,7 @@
 // rabit recover: copies the readable part of a recording that was not ended in order into a whole one.
 #include <rabit/RabitVersion.h>
+#include <rabit/mcap/FileSource.h>
+#include <rabit/mcap/McapRecovery.h>
 
 #include <cstdint>
 #include <filesystem>
@@ -9,8 +11,6 @@
 #include "NewFile.h"
 #include "PlayedFiles.h"
 #include "Wakeup.h"
-#include "recording/mcap/FileSource.h"
-#include "recording/mcap/McapRecovery.h"
 
 namespace Rabit::Tool
 {

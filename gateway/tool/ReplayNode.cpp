@@ -1,11 +1,12 @@
 #include "ReplayNode.h"
 
+#include <rabit/gateway/QosProfileWords.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include "Output.h"
-#include "names/QosProfileWords.h"
 
 namespace Rabit::Tool
 {

@@ -1,5 +1,7 @@
 #include "Samples.h"
 
+#include <rabit/base/ListedNames.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
@@ -9,8 +11,6 @@
 
 #include "Offers.h"
 #include "Output.h"
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {

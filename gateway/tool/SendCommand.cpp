@@ -1,6 +1,8 @@
 // rabit send: sends queue messages, and reports their outcomes.
 #include <rabit/RabitQueueReceipt.h>
+#include <rabit/base/ListedNames.h>
 #include <rabit/dynamic/DynamicMessage.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
@@ -15,8 +17,6 @@
 #include "JsonText.h"
 #include "Offers.h"
 #include "Replies.h"
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {

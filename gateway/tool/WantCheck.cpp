@@ -1,5 +1,7 @@
 #include "WantCheck.h"
 
+#include <rabit/base/ListedNames.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/idl/NearestWord.h>
 
 #include <algorithm>
@@ -7,9 +9,6 @@
 #include <cstddef>
 #include <iterator>
 #include <set>
-
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Tool
 {

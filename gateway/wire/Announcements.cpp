@@ -1,14 +1,14 @@
 #include "wire/Announcements.h"
 
 #include <rabit/base/Fnv1a.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/QosProfileWords.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
-#include "names/NamePattern.h"
-#include "names/QosProfileWords.h"
 #include "names/TypeDefinition.h"
 #include "wire/GatewayTopics.h"
 

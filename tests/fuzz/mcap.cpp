@@ -1,10 +1,11 @@
 // Recordings: their summaries, their records, their messages, and what is recovered of them.
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/McapRecovery.h>
+#include <rabit/mcap/MessageCursor.h>
+
 #include <algorithm>
 
 #include "Input.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/McapRecovery.h"
-#include "recording/mcap/MessageCursor.h"
 
 namespace
 {

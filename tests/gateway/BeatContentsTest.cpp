@@ -2,12 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rabit/gateway/AirCost.h>
 
 #include <set>
 
 #include "BeatSamples.h"
 #include "air/AirBudget.h"
-#include "air/AirCost.h"
 #include "names/NodeTag.h"
 #include "presence/Whereabouts.h"
 #include "wire/BeatExtensions.h"

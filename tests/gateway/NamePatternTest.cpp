@@ -1,6 +1,5 @@
-#include "names/NamePattern.h"
-
 #include <gtest/gtest.h>
+#include <rabit/gateway/NamePattern.h>
 
 #include <string>
 #include <utility>

@@ -1,8 +1,7 @@
 // Names that IDL takes for keywords, in texts for readers of other makers.
-#include "names/SchemaText.h"
-
 #include <gtest/gtest.h>
 #include <rabit/dynamic/DynamicType.h>
+#include <rabit/gateway/SchemaText.h>
 
 namespace Rabit
 {

@@ -69,6 +69,10 @@ class CheckIncludes(unittest.TestCase):
         self.assertEqual(len(self.violations("gateway/recording/mcap/A.cpp", '#include <rabit/RabitMessage.h>\n')), 1)
         self.assertEqual(len(self.violations("gateway/manager/A.cpp", '#include "recording/mcap/Zstd.h"\n')), 1)
 
+    def test_programs_read_recordings_by_public_headers_alone(self):
+        self.assertEqual(self.violations("gateway/tool/A.cpp", "#include <rabit/mcap/MessageCursor.h>\n"), [])
+        self.assertEqual(len(self.violations("gateway/tool/A.cpp", '#include "recording/mcap/Zstd.h"\n')), 1)
+
     def test_standard_headers_are_for_everybody(self):
         self.assertEqual(self.violations("core/src/A.cpp", "#include <vector>\n#include <boost/bind/bind.hpp>\n"), [])
 

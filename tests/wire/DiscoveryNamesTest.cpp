@@ -1,11 +1,11 @@
 // The texts by which nodes recognize each other in DDS discovery.
 #include <gtest/gtest.h>
+#include <rabit/gateway/QosProfileWords.h>
 
 #include <span>
 #include <string>
 
 #include "common/ParticipantIdentity.h"
-#include "names/QosProfileWords.h"
 #include "names/RosNames.h"
 #include "wire/GatewayTopics.h"
 

@@ -1,5 +1,8 @@
 // A recording with one message, without compression: other versions of zstd may pack otherwise.
 #include <gtest/gtest.h>
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/McapWriter.h>
+#include <rabit/mcap/MessageCursor.h>
 
 #include <cstdint>
 #include <set>
@@ -8,9 +11,6 @@
 
 #include "Hex.h"
 #include "MemoryFile.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/McapWriter.h"
-#include "recording/mcap/MessageCursor.h"
 #include "recording/replay/ReplayPlan.h"
 
 namespace Rabit::Test

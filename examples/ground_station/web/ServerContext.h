@@ -4,7 +4,7 @@
 #include "HttpAnswer.h"
 #include "WebServer.h"
 
-#include <keys/TokenGuard.h>
+#include <rabit/keys/TokenGuard.h>
 
 #include <boost/asio/ssl/context.hpp>
 

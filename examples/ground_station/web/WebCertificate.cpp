@@ -1,7 +1,8 @@
 #include "WebCertificate.h"
 
+#include <rabit/keys/KeysError.h>
+
 #include <keys/Certificates.h>
-#include <keys/KeysError.h>
 #include <keys/OpenSsl.h>
 
 #include <openssl/crypto.h>

@@ -2,9 +2,10 @@
 
 #include "WebAddress.h"
 
-#include <keys/AccessToken.h>
+#include <rabit/keys/AccessToken.h>
+#include <rabit/keys/KeysError.h>
+
 #include <keys/KeyFiles.h>
-#include <keys/KeysError.h>
 
 #include <filesystem>
 

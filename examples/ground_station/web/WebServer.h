@@ -36,8 +36,8 @@ struct ServerContext;
 // sends pings), number of connections (see ConnectionGate), replies that wait. A peer that exceeds a limit
 // is disconnected. No input from the network makes a method throw.
 //
-// With secrets it serves only browsers that show the token (keys/TokenGuard.h): first in the address that
-// Addresses returns, later by a cookie. If the secrets have a certificate, it speaks TLS only. Without
+// With secrets it serves only browsers that show the token (rabit/keys/TokenGuard.h): first in the address
+// that Addresses returns, later by a cookie. If the secrets have a certificate, it speaks TLS only. Without
 // secrets, anybody who reaches it may view and command.
 //
 // Threads: Start, Stop and the destructor belong to one thread; the rest may be called from any.

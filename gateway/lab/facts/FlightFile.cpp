@@ -1,14 +1,14 @@
 #include "FlightFile.h"
 
+#include <rabit/mcap/ChunkReader.h>
+#include <rabit/mcap/FileSource.h>
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/RecordCodec.h>
+#include <rabit/mcap/RecordScanner.h>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
-
-#include "recording/mcap/ChunkReader.h"
-#include "recording/mcap/FileSource.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/RecordCodec.h"
-#include "recording/mcap/RecordScanner.h"
 
 namespace Rabit::Facts
 {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <rabit/dynamic/DynamicType.h>
+#include <rabit/mcap/McapRecords.h>
+#include <rabit/mcap/RecordedChannel.h>
 
 #include <nlohmann/json.hpp>
 
@@ -14,8 +16,6 @@
 #include <vector>
 
 #include "FleetFacts.h"
-#include "recording/mcap/McapRecords.h"
-#include "recording/mcap/RecordedChannel.h"
 
 namespace Rabit::Facts
 {

@@ -3,17 +3,16 @@
 #include <rabit/base/NumberIn.h>
 #include <rabit/dynamic/DynamicType.h>
 #include <rabit/gateway/LoadGatewayConfig.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/QosProfileWords.h>
 #include <rabit/idl/MessageTypeRegistry.h>
+#include <rabit/mcap/MessageCursor.h>
+#include <rabit/mcap/RecordedChannel.h>
 
 #include <algorithm>
 #include <limits>
 #include <set>
 #include <stdexcept>
-
-#include "names/NamePattern.h"
-#include "names/QosProfileWords.h"
-#include "recording/mcap/MessageCursor.h"
-#include "recording/mcap/RecordedChannel.h"
 
 namespace Rabit::WhatIf
 {

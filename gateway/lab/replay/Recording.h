@@ -1,6 +1,8 @@
 #pragma once
 
 #include <rabit/gateway/GatewayConfig.h>
+#include <rabit/mcap/FileSource.h>
+#include <rabit/mcap/McapContents.h>
 
 #include <cstdint>
 #include <map>
@@ -10,8 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "recording/mcap/FileSource.h"
-#include "recording/mcap/McapContents.h"
 #include "recording/replay/RecordedMessages.h"
 #include "recording/replay/ReplayPlan.h"
 

@@ -2,6 +2,7 @@
 
 #include <rabit/gateway/ConfigError.h>
 #include <rabit/gateway/GatewayManager.h>
+#include <rabit/gateway/NamePattern.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 #include <rabit/recording/RecorderManager.h>
 
@@ -15,7 +16,6 @@
 
 #include "Seconds.h"
 #include "Values.h"
-#include "names/NamePattern.h"
 
 namespace Rabit::Python
 {

@@ -1,12 +1,13 @@
 #include "Recording.h"
 
 #include <rabit/RabitVersion.h>
+#include <rabit/mcap/FileSink.h>
 
 #include <filesystem>
 #include <stdexcept>
+#include <system_error>
 
 #include "Values.h"
-#include "recording/FolderDisk.h"
 #include "recording/merge/Merger.h"
 
 namespace Rabit::Python
@@ -123,19 +124,13 @@ std::vector<std::string> MergeRecordings(const std::vector<std::string> &files, 
                                             : "; wall_clock=True takes it by its wall clock, which may be "
                                               "wrong by anything"));
     }
-    const std::filesystem::path target = to;
-    FolderDisk disk(target.has_parent_path() ? target.parent_path().string() : ".");
-    std::string reason;
-    const auto file = disk.Create(target.filename().string(), reason);
-    if (!file)
-    {
-        throw std::runtime_error(reason);
-    }
-    Mcap::McapWriter writer(*file, {"rabit " RABIT_VERSION_STRING, "rabit", true});
+    Mcap::FileSink file(to);
+    Mcap::McapWriter writer(file, {"rabit " RABIT_VERSION_STRING, "rabit", true});
     const Merge::Merged merged = Merge::Merger(open, lives, plan, writer).Run([] { return false; });
-    if (!merged.IsWritten || !file->Sync())
+    if (!merged.IsWritten || !file.Sync())
     {
-        disk.Remove(target.filename().string());
+        std::error_code ignored;
+        std::filesystem::remove(to, ignored);
         throw std::runtime_error(to + ": the disk takes no more; it is removed");
     }
     std::vector<std::string> remarks = lives.Remarks;

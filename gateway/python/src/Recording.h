@@ -1,6 +1,9 @@
 // Recordings, for Python.
 #pragma once
 
+#include <rabit/mcap/FileSource.h>
+#include <rabit/mcap/MessageCursor.h>
+
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
@@ -12,8 +15,6 @@
 #include <vector>
 
 #include "Codec.h"
-#include "recording/mcap/FileSource.h"
-#include "recording/mcap/MessageCursor.h"
 
 namespace Rabit::Python
 {

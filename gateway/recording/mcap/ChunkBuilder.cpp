@@ -1,9 +1,10 @@
 #include "recording/mcap/ChunkBuilder.h"
 
+#include <rabit/mcap/RecordCodec.h>
+
 #include <algorithm>
 
 #include "recording/mcap/Crc32.h"
-#include "recording/mcap/RecordCodec.h"
 
 namespace Rabit::Mcap
 {

@@ -1,8 +1,9 @@
 #pragma once
 
+#include <rabit/mcap/McapRecords.h>
+
 #include <vector>
 
-#include "recording/mcap/McapRecords.h"
 #include "recording/mcap/Zstd.h"
 
 namespace Rabit::Mcap

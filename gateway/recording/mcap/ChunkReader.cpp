@@ -1,4 +1,4 @@
-#include "recording/mcap/ChunkReader.h"
+#include <rabit/mcap/ChunkReader.h>
 
 #include "recording/mcap/Crc32.h"
 #include "recording/mcap/Zstd.h"

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <rabit/base/LittleEndian.h>
+#include <rabit/mcap/McapRecords.h>
 
 #include <type_traits>
-
-#include "recording/mcap/McapRecords.h"
 
 namespace Rabit::Mcap
 {

@@ -1,4 +1,4 @@
-#include "recording/mcap/FileSource.h"
+#include <rabit/mcap/FileSource.h>
 
 #include <fcntl.h>
 #include <sys/stat.h>

@@ -1,14 +1,15 @@
-#include "recording/mcap/McapContents.h"
+#include <rabit/mcap/McapContents.h>
+
+#include <rabit/mcap/ChunkReader.h>
+#include <rabit/mcap/RecordCodec.h>
+#include <rabit/mcap/RecordScanner.h>
 
 #include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
 
-#include "recording/mcap/ChunkReader.h"
 #include "recording/mcap/Crc32.h"
-#include "recording/mcap/RecordCodec.h"
-#include "recording/mcap/RecordScanner.h"
 
 namespace Rabit::Mcap
 {

@@ -1,10 +1,12 @@
-#include "recording/mcap/McapWriter.h"
+#include <rabit/mcap/McapWriter.h>
+
+#include <rabit/mcap/RecordCodec.h>
 
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
 
-#include "recording/mcap/RecordCodec.h"
+#include "recording/mcap/ChunkBuilder.h"
 
 namespace Rabit::Mcap
 {
@@ -15,12 +17,17 @@ constexpr std::size_t MostNumbers = std::numeric_limits<std::uint16_t>::max();
 
 }  // namespace
 
-McapWriter::McapWriter(ByteSink &sink, const Options &options) : _sink(sink), _small(options.Compresses)
+McapWriter::McapWriter(ByteSink &sink, const Options &options)
+    : _sink(sink),
+      _small(std::make_unique<ChunkBuilder>(options.Compresses)),
+      _large(std::make_unique<ChunkBuilder>(false))
 {
     Bytes bytes(Magic.begin(), Magic.end());
     Append(bytes, Header{options.Profile, options.Library});
     Write(bytes);
 }
+
+McapWriter::~McapWriter() = default;
 
 std::uint16_t McapWriter::AddSchema(const std::string &name, const std::string &encoding,
                                     const std::string &data)
@@ -64,7 +71,7 @@ bool McapWriter::Add(const Message &message)
         return false;
     }
     const bool isLarge = message.Data.size() >= LargeMessage;
-    ChunkBuilder &chunk = isLarge ? _large : _small;
+    ChunkBuilder &chunk = isLarge ? *_large : *_small;
     const std::size_t full = isLarge ? LargeChunkSize : ChunkSize;
     // Both, so that the file has all messages that were added before those of a chunk that follows.
     if (chunk.Size() + message.Data.size() > full && !FinishChunks())
@@ -123,7 +130,7 @@ bool McapWriter::AddAttachment(const Attachment &attachment)
 
 bool McapWriter::FinishChunks()
 {
-    return FinishChunk(_small) && FinishChunk(_large);
+    return FinishChunk(*_small) && FinishChunk(*_large);
 }
 
 bool McapWriter::FinishChunk(ChunkBuilder &chunk)
@@ -204,6 +211,11 @@ void McapWriter::AppendSummary(Bytes &to, std::vector<SummaryOffset> &groups) co
     group(Opcode::ChunkIndex, [this, &insert] { insert(_chunkIndexes); });
     group(Opcode::AttachmentIndex, [this, &insert] { insert(_attachmentIndexes); });
     group(Opcode::MetadataIndex, [this, &insert] { insert(_metadataIndexes); });
+}
+
+std::uint64_t McapWriter::BytesToWrite() const
+{
+    return _offset + _small->Size() + _large->Size();
 }
 
 bool McapWriter::Write(ByteView bytes)

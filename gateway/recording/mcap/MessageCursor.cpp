@@ -1,11 +1,11 @@
-#include "recording/mcap/MessageCursor.h"
+#include <rabit/mcap/MessageCursor.h>
+
+#include <rabit/mcap/ChunkReader.h>
+#include <rabit/mcap/RecordCodec.h>
+#include <rabit/mcap/RecordScanner.h>
 
 #include <algorithm>
 #include <utility>
-
-#include "recording/mcap/ChunkReader.h"
-#include "recording/mcap/RecordCodec.h"
-#include "recording/mcap/RecordScanner.h"
 
 namespace Rabit::Mcap
 {

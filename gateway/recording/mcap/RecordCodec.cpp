@@ -1,4 +1,4 @@
-#include "recording/mcap/RecordCodec.h"
+#include <rabit/mcap/RecordCodec.h>
 
 #include <concepts>
 #include <tuple>

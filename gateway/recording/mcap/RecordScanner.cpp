@@ -1,9 +1,9 @@
-#include "recording/mcap/RecordScanner.h"
+#include <rabit/mcap/RecordScanner.h>
+
+#include <rabit/mcap/RecordCodec.h>
 
 #include <algorithm>
 #include <array>
-
-#include "recording/mcap/RecordCodec.h"
 
 namespace Rabit::Mcap
 {

@@ -1,4 +1,4 @@
-#include "recording/mcap/RecordedChannel.h"
+#include <rabit/mcap/RecordedChannel.h>
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/MessageCursor.h>
+
 #include <functional>
 #include <set>
-
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/MessageCursor.h"
 
 namespace Rabit::Merge
 {

@@ -1,10 +1,11 @@
 #pragma once
 
+#include <rabit/mcap/McapRecords.h>
+
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "recording/mcap/McapRecords.h"
 #include "recording/merge/Moment.h"
 
 namespace Rabit::Merge

@@ -1,13 +1,13 @@
 #include "recording/merge/Knowledge.h"
 
 #include <rabit/base/NumberIn.h>
+#include <rabit/mcap/MessageCursor.h>
+#include <rabit/mcap/RecordedChannel.h>
 
 #include <algorithm>
 #include <map>
 #include <tuple>
 
-#include "recording/mcap/MessageCursor.h"
-#include "recording/mcap/RecordedChannel.h"
 #include "recording/merge/ChannelChunks.h"
 #include "recording/merge/ClockPair.h"
 #include "recording/merge/ClockReport.h"

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <rabit/mcap/ByteSource.h>
+#include <rabit/mcap/McapContents.h>
+
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "recording/mcap/ByteSource.h"
-#include "recording/mcap/McapContents.h"
 #include "recording/merge/Moment.h"
 
 namespace Rabit::Merge

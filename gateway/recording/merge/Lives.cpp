@@ -2,13 +2,13 @@
 
 #include <rabit/base/NaturalOrder.h>
 #include <rabit/base/NumberIn.h>
+#include <rabit/mcap/MessageCursor.h>
 
 #include <algorithm>
 #include <map>
 #include <tuple>
 #include <utility>
 
-#include "recording/mcap/MessageCursor.h"
 #include "recording/merge/ChannelChunks.h"
 
 namespace Rabit::Merge

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <rabit/mcap/McapContents.h>
+
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "recording/mcap/McapContents.h"
 #include "recording/merge/ClockGraph.h"
 
 namespace Rabit::Merge

@@ -1,9 +1,9 @@
 #include "recording/merge/MergedChannels.h"
 
-#include <utility>
+#include <rabit/gateway/SchemaText.h>
+#include <rabit/mcap/RecordedChannel.h>
 
-#include "names/SchemaText.h"
-#include "recording/mcap/RecordedChannel.h"
+#include <utility>
 
 namespace Rabit::Merge
 {

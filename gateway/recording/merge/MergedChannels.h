@@ -1,12 +1,13 @@
 #pragma once
 
+#include <rabit/mcap/McapWriter.h>
+
 #include <map>
 #include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 
-#include "recording/mcap/McapWriter.h"
 #include "recording/merge/MergePlan.h"
 
 namespace Rabit::Merge

@@ -1,13 +1,14 @@
 #pragma once
 
+#include <rabit/mcap/McapWriter.h>
+#include <rabit/mcap/MessageCursor.h>
+
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "recording/mcap/McapWriter.h"
-#include "recording/mcap/MessageCursor.h"
 #include "recording/merge/MergePlan.h"
 #include "recording/merge/MergedChannels.h"
 

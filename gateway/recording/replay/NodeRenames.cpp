@@ -1,8 +1,8 @@
 #include "recording/replay/NodeRenames.h"
 
-#include <algorithm>
+#include <rabit/gateway/NamePattern.h>
 
-#include "names/NamePattern.h"
+#include <algorithm>
 
 namespace Rabit::Replay
 {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/MessageCursor.h>
+
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -7,8 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/MessageCursor.h"
 #include "recording/replay/ReplayItem.h"
 #include "recording/replay/ReplayPlan.h"
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/mcap/McapContents.h>
+
 #include <cstdint>
 #include <map>
 #include <set>
@@ -7,8 +9,6 @@
 #include <tuple>
 #include <utility>
 #include <vector>
-
-#include "recording/mcap/McapContents.h"
 
 namespace Rabit::Replay
 {

@@ -1,11 +1,11 @@
 #pragma once
 
+#include <rabit/mcap/McapRecords.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
-
-#include "recording/mcap/McapRecords.h"
 
 namespace Rabit::Replay
 {

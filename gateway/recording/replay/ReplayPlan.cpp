@@ -1,14 +1,15 @@
 #include "recording/replay/ReplayPlan.h"
 
+#include <rabit/base/ListedNames.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/SchemaText.h>
+#include <rabit/mcap/RecordedChannel.h>
+
 #include <algorithm>
 #include <optional>
 #include <tuple>
 #include <utility>
 
-#include "names/ListedNames.h"
-#include "names/NamePattern.h"
-#include "names/SchemaText.h"
-#include "recording/mcap/RecordedChannel.h"
 #include "recording/replay/RecordingLacks.h"
 
 namespace Rabit::Replay

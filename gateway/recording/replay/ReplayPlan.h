@@ -1,13 +1,13 @@
 #pragma once
 
+#include <rabit/mcap/McapContents.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <set>
 #include <string>
 #include <vector>
-
-#include "recording/mcap/McapContents.h"
 
 namespace Rabit::Replay
 {

@@ -1,3 +1,6 @@
+#include <rabit/mcap/FileSource.h>
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/MessageCursor.h>
 #include <rabit/recording/ManagerRerun.h>
 
 #include <algorithm>
@@ -6,9 +9,6 @@
 #include <map>
 #include <utility>
 
-#include "recording/mcap/FileSource.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/MessageCursor.h"
 #include "recording/rerun/StepText.h"
 
 namespace Rabit

@@ -1,9 +1,9 @@
 #include "doctor/MachineChecks.h"
 
+#include <rabit/gateway/AirCost.h>
+
 #include <algorithm>
 #include <iterator>
-
-#include "air/AirCost.h"
 
 namespace Rabit::Tool::Doctor
 {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <rabit/keys/TokenGuard.h>
+
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +11,6 @@
 #include <set>
 #include <string>
 
-#include "keys/TokenGuard.h"
 #include "live/LiveProtocol.h"
 #include "live/LiveQueue.h"
 #include "live/LiveServer.h"

@@ -26,7 +26,7 @@ class LiveSession;
 //   topic. It delays no other viewer. It misses no State's newest value.
 // - A channel stays for as long as the server: a node that comes back goes on in the same panels.
 // - A viewer must show the token in the address (Settings::Token): other users of the machine reach loopback,
-//   too. After wrong tokens the server lets an address wait (keys/TokenGuard.h).
+//   too. After wrong tokens the server lets an address wait (rabit/keys/TokenGuard.h).
 // - Pages of other sites than viewers' are refused: a browser would let any page look at loopback.
 //
 // Requests from the network, their time and the number of viewers are bounded. Nothing from the network makes

@@ -1,26 +1,29 @@
 #include "live/LiveTaps.h"
 
+#include <rabit/SystemTimeClock.h>
 #include <rabit/dynamic/DynamicType.h>
+#include <rabit/gateway/NamePattern.h>
+#include <rabit/gateway/QosProfileWords.h>
+#include <rabit/gateway/SchemaText.h>
 #include <rabit/idl/MessageTypeRegistry.h>
 
+#include <chrono>
 #include <mutex>
 #include <utility>
 
 #include "Output.h"
-#include "clocks/GpsTime.h"
-#include "names/NamePattern.h"
-#include "names/QosProfileWords.h"
-#include "names/SchemaText.h"
 
 namespace Rabit::Tool
 {
 namespace
 {
 
+// Returns a time of messages as nanoseconds since 1970 (UTC), by which viewers order them.
 std::uint64_t Nanoseconds(double gpsSeconds)
 {
-    const std::int64_t time = GpsTime::ToUtcNanoseconds(gpsSeconds);
-    return time < 0 ? 0 : static_cast<std::uint64_t>(time);
+    const auto time = SystemTimeClock::GetSystemTimeClock()->GpsTimeSecondsToSystemClockTimepoint(gpsSeconds);
+    const std::chrono::nanoseconds since = time.time_since_epoch();
+    return since.count() < 0 ? 0 : static_cast<std::uint64_t>(since.count());
 }
 
 }  // namespace

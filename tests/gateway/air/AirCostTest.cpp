@@ -1,6 +1,5 @@
-#include "air/AirCost.h"
-
 #include <gtest/gtest.h>
+#include <rabit/gateway/AirCost.h>
 
 namespace Rabit
 {

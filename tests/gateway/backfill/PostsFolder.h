@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <rabit/mcap/McapWriter.h>
 
 #include <cstdint>
 #include <cstdlib>
@@ -12,7 +13,6 @@
 #include <vector>
 
 #include "backfill/FolderPosts.h"
-#include "recording/mcap/McapWriter.h"
 
 namespace Rabit::Backfill
 {

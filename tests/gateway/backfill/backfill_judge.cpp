@@ -1,6 +1,8 @@
 // backfill_judge FOLDER_OF_ORIGIN ORIGIN FOLDER GROUND MESSAGE...: compares the posts of each message in the
 // recording of their origin node with those in the recording of another node. Prints one JSON object a
 // message.
+#include <rabit/mcap/RecordedChannel.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -13,7 +15,6 @@
 #include "backfill/FolderPosts.h"
 #include "backfill/RecordedSeries.h"
 #include "backfill/RecordingIndex.h"
-#include "recording/mcap/RecordedChannel.h"
 
 namespace
 {

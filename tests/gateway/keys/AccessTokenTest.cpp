@@ -1,15 +1,13 @@
 // The token of a server: random, in memory or in a file.
-#include "keys/AccessToken.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rabit/keys/AccessToken.h>
+#include <rabit/keys/KeysError.h>
 
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <string>
-
-#include "keys/KeysError.h"
 
 namespace
 {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <rabit/keys/KeysError.h>
 #include <unistd.h>
 
 #include <ctime>
@@ -12,7 +13,6 @@
 
 #include "keys/FleetAuthority.h"
 #include "keys/KeyFiles.h"
-#include "keys/KeysError.h"
 #include "keys/MemberFolder.h"
 #include "keys/MemberPermissions.h"
 

@@ -1,6 +1,7 @@
 #include "keys/MemberFolder.h"
 
 #include <gmock/gmock.h>
+#include <rabit/keys/NodeOfKeys.h>
 
 #include <algorithm>
 #include <random>
@@ -53,6 +54,11 @@ protected:
 TEST_F(MemberFolderTest, IsForOneNameAlone)
 {
     EXPECT_THAT(MemberFolder(FolderOf("uav1")).WhyNot("uav2"), HasSubstr("is for the node `uav1`"));
+}
+
+TEST_F(MemberFolderTest, TellsTheNodeThatItIsFor)
+{
+    EXPECT_EQ(NodeOfKeys(FolderOf("uav2")), "uav2");
 }
 
 TEST_F(MemberFolderTest, NamesThePermissionsThatAreMissing)

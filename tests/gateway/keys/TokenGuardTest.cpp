@@ -1,7 +1,6 @@
-#include "keys/TokenGuard.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <rabit/keys/TokenGuard.h>
 
 #include <string>
 

@@ -2,6 +2,7 @@
 
 #include <rabit/idl/MessageType.h>
 #include <rabit/idl/MessageTypeRegistry.h>
+#include <rabit/mcap/McapWriter.h>
 
 #include <gmock/gmock.h>
 
@@ -10,7 +11,6 @@
 #include <fstream>
 
 #include "gateway/recording/MemoryFile.h"
-#include "recording/mcap/McapWriter.h"
 
 namespace Rabit::Facts
 {

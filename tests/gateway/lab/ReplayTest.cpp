@@ -1,4 +1,5 @@
 #include <rabit/dynamic/DynamicType.h>
+#include <rabit/mcap/McapWriter.h>
 
 #include <gmock/gmock.h>
 
@@ -10,7 +11,6 @@
 #include "Recording.h"
 #include "SimulatedFlight.h"
 #include "gateway/recording/MemoryFile.h"
-#include "recording/mcap/McapWriter.h"
 
 namespace Rabit::WhatIf
 {

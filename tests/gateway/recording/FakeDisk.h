@@ -1,6 +1,9 @@
 // A disk in memory with limited room. It knows which bytes would outlast a loss of power.
 #pragma once
 
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/MessageCursor.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -12,8 +15,6 @@
 
 #include "MemoryFile.h"
 #include "recording/RecordingDisk.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/MessageCursor.h"
 
 class FakeDisk final : public Rabit::RecordingDisk
 {

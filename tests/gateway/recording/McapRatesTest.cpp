@@ -1,5 +1,7 @@
 // How often the messages of a channel were recorded.
 #include <gtest/gtest.h>
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/McapWriter.h>
 
 #include <algorithm>
 #include <map>
@@ -7,8 +9,6 @@
 #include <string>
 
 #include "MemoryFile.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/McapWriter.h"
 
 namespace
 {

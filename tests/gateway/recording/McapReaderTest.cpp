@@ -1,15 +1,15 @@
 // Reading files that are truncated, damaged, or made with bad intent.
 #include <gtest/gtest.h>
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/McapRecovery.h>
+#include <rabit/mcap/MessageCursor.h>
+#include <rabit/mcap/RecordCodec.h>
+#include <rabit/mcap/RecordScanner.h>
 
 #include <random>
 
 #include "MemoryFile.h"
 #include "SmallRecording.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/McapRecovery.h"
-#include "recording/mcap/MessageCursor.h"
-#include "recording/mcap/RecordCodec.h"
-#include "recording/mcap/RecordScanner.h"
 
 namespace
 {

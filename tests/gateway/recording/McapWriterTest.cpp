@@ -1,6 +1,7 @@
-#include "recording/mcap/McapWriter.h"
-
 #include <gtest/gtest.h>
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/McapWriter.h>
+#include <rabit/mcap/MessageCursor.h>
 
 #include <algorithm>
 #include <stdexcept>
@@ -8,8 +9,6 @@
 #include "MemoryFile.h"
 #include "SmallRecording.h"
 #include "recording/mcap/Crc32.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/MessageCursor.h"
 
 namespace
 {

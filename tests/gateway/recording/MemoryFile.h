@@ -1,12 +1,12 @@
 // A file in memory, for writers and readers of recordings.
 #pragma once
 
+#include <rabit/mcap/ByteSink.h>
+#include <rabit/mcap/ByteSource.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <utility>
-
-#include "recording/mcap/ByteSink.h"
-#include "recording/mcap/ByteSource.h"
 
 class MemoryFile final : public Rabit::Mcap::ByteSink, public Rabit::Mcap::ByteSource
 {

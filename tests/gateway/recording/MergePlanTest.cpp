@@ -3,12 +3,12 @@
 #include "recording/merge/MergePlan.h"
 
 #include <gmock/gmock.h>
+#include <rabit/mcap/MessageCursor.h>
 
 #include <array>
 #include <tuple>
 
 #include "SyntheticFleet.h"
-#include "recording/mcap/MessageCursor.h"
 
 namespace Rabit::Merge
 {

@@ -1,6 +1,9 @@
 // A recording in memory, as a node writes it, for tests of replay.
 #pragma once
 
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/McapWriter.h>
+
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -9,8 +12,6 @@
 #include <utility>
 
 #include "MemoryFile.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/McapWriter.h"
 
 class PlayedFile
 {

@@ -1,6 +1,5 @@
-#include "recording/mcap/RecordedChannel.h"
-
 #include <gtest/gtest.h>
+#include <rabit/mcap/RecordedChannel.h>
 
 #include <string>
 #include <utility>

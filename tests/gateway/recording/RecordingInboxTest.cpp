@@ -1,10 +1,9 @@
 #include "recording/RecordingInbox.h"
 
 #include <gtest/gtest.h>
+#include <rabit/mcap/McapWriter.h>
 
 #include <thread>
-
-#include "recording/mcap/McapWriter.h"
 
 namespace Rabit
 {

@@ -1,12 +1,13 @@
 // A recording of some messages on two channels, one of them with pictures, in several chunks.
 #pragma once
 
+#include <rabit/mcap/McapWriter.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "MemoryFile.h"
-#include "recording/mcap/McapWriter.h"
 
 struct SmallRecording
 {

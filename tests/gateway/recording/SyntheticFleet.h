@@ -3,6 +3,8 @@
 // Time is true time, in nanoseconds since the beginning.
 #pragma once
 
+#include <rabit/mcap/McapWriter.h>
+
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -15,7 +17,6 @@
 
 #include "MemoryFile.h"
 #include "clocks/PeerClock.h"
-#include "recording/mcap/McapWriter.h"
 #include "recording/merge/Lives.h"
 
 class SyntheticFleet

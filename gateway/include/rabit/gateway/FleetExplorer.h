@@ -11,6 +11,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace Rabit
@@ -84,8 +85,7 @@ public:
         LastLines,  // the last lines of its log, as many as the argument says
         LinesFrom,  // its log from the line with that number on; the request waits for such a line
         Echo,       // empty, for the round trip; requested once, with another argument each time
-        Foreign,    // its topics of foreign programs, a line each with tabs between: `read` or `written`,
-                    // state, topic, type, local name, QoS, samples, readers, reason
+        Foreign,    // its topics of foreign programs: ForeignTopicsIn reads them
         Agreement   // lines with tabs between: `members`, the lease in ms and the sorted members, then for
                     // each claim that it holds `claim`, fence, name; empty: it has no agreement
     };
@@ -99,6 +99,10 @@ public:
     virtual void AskForReport(const std::string &node, Report what, std::uint32_t argument = 0) = 0;
     // Takes the answer to the last request, once it has come.
     virtual std::optional<Answer> TakeReport(const std::string &node, Report what) = 0;
+    // Returns the topics in a report of the kind Foreign, which may be any text: lines that make no sense are
+    // left out. Of the counters, the topics have the samples and the readers alone; the rest is 0. Texts in
+    // them are printable ASCII.
+    static std::vector<Gateway::ForeignTopic> ForeignTopicsIn(std::string_view report);
 
     // The readers of a message, of whatever origin node: the reading nodes, by name and each once, and the
     // number of other readers. Tools are no nodes. Types: the types in which they read it, each once.

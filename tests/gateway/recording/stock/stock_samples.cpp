@@ -3,7 +3,9 @@
 // small.mcap and small.json: the least number of messages in the first N bytes, for several N.
 // corpus.mcap and corpus.jsonl: samples of every type; each line is the value of a message, as JSON.
 #include <rabit/dynamic/DynamicType.h>
+#include <rabit/gateway/SchemaText.h>
 #include <rabit/idl/MessageTypeRegistry.h>
+#include <rabit/mcap/McapWriter.h>
 
 #include <fstream>
 #include <iostream>
@@ -14,8 +16,6 @@
 #include "RandomSample.h"
 #include "Samples.h"
 #include "dynamic/ReadType.h"
-#include "names/SchemaText.h"
-#include "recording/mcap/McapWriter.h"
 
 namespace
 {

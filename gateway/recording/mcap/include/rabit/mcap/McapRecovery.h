@@ -1,8 +1,8 @@
 #pragma once
 
-#include "recording/mcap/ByteSource.h"
-#include "recording/mcap/McapContents.h"
-#include "recording/mcap/McapWriter.h"
+#include <rabit/mcap/ByteSource.h>
+#include <rabit/mcap/McapContents.h>
+#include <rabit/mcap/McapWriter.h>
 
 namespace Rabit::Mcap
 {
@@ -17,7 +17,8 @@ struct Recovered
 };
 
 // Writes all that can be read of a file into another file, in the same order, with an index, and ends that
-// file. The source may be truncated, or have damaged chunks or none at all.
+// file: nothing may be added to the writer afterwards. The source may be truncated, or have damaged chunks or
+// none at all. No content of it throws. If the writer's sink fails, IsWritten is false.
 Recovered Recover(ByteSource &source, McapWriter &writer);
 
 }  // namespace Rabit::Mcap

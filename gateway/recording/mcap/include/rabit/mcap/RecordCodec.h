@@ -1,13 +1,14 @@
 #pragma once
 
+#include <rabit/mcap/McapRecords.h>
+
 #include <optional>
 
-#include "recording/mcap/McapRecords.h"
-
-// Append functions encode a record with its head. Read functions decode a record from the bytes behind its
-// head. They return nothing for bytes that are no such record, and never read past them. They take no more
-// memory than a small multiple of the number of bytes. Bytes behind the fields that are known here are
-// ignored, as the format requires. Views in a decoded record point into the bytes.
+// These functions keep no state, so any thread may call them. Append functions encode a record with its head.
+// Read functions decode a record from the bytes behind its head. They return nothing for bytes that are no
+// such record, and never read past them. They take no more memory than a small multiple of the number of
+// bytes. Bytes behind the fields that are known here are ignored, as the format requires. Views in a decoded
+// record point into the bytes.
 namespace Rabit::Mcap
 {
 

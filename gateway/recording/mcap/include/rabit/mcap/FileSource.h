@@ -1,13 +1,14 @@
 #pragma once
 
-#include <string>
+#include <rabit/mcap/ByteSource.h>
 
-#include "recording/mcap/ByteSource.h"
+#include <string>
 
 namespace Rabit::Mcap
 {
 
-// A file of the file system, which may be growing: Size is its size at construction.
+// A file of the file system, which may be growing: Size is its size at construction. The file is open until
+// the destructor. One thread at a time.
 class FileSource final : public ByteSource
 {
 public:

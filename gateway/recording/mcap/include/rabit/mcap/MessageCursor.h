@@ -1,18 +1,19 @@
 #pragma once
 
+#include <rabit/mcap/McapContents.h>
+
 #include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <queue>
 
-#include "recording/mcap/McapContents.h"
-
 namespace Rabit::Mcap
 {
 
 // Returns the messages of a file in the order of log times; messages of one time in the order of the file.
-// Loads chunks as it comes to them. Not thread-safe.
+// Loads chunks as it comes to them. No content of the file makes it throw: a chunk that cannot be read is
+// left out, and is a problem. Not thread-safe.
 class MessageCursor
 {
 public:

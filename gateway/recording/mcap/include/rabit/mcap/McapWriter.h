@@ -1,14 +1,16 @@
 #pragma once
 
+#include <rabit/mcap/ByteSink.h>
+
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "recording/mcap/ByteSink.h"
-#include "recording/mcap/ChunkBuilder.h"
-
 namespace Rabit::Mcap
 {
+
+class ChunkBuilder;
 
 // Writes one MCAP file. The constructor writes the beginning. A chunk is written when it is full, or by
 // FinishChunks. Finish writes the summary, by which readers find messages without reading all.
@@ -37,6 +39,9 @@ public:
     };
     // The sink must outlive the writer.
     McapWriter(ByteSink &sink, const Options &options);
+    ~McapWriter();
+    McapWriter(const McapWriter &) = delete;
+    McapWriter &operator=(const McapWriter &) = delete;
 
     // Return the number of the new schema or channel. At most 65535 of each: beyond that AddSchema returns
     // 0, which means none, and AddChannel nothing. A schema that the writer does not have throws
@@ -57,7 +62,7 @@ public:
     bool IsGood() const { return _good; }
     // Bytes that the sink took; and the same with the bytes that wait in chunks.
     std::uint64_t BytesWritten() const { return _offset; }
-    std::uint64_t BytesToWrite() const { return _offset + _small.Size() + _large.Size(); }
+    std::uint64_t BytesToWrite() const;
     const Statistics &Counted() const { return _statistics; }
 
 private:
@@ -84,8 +89,8 @@ private:
     void AppendSummary(Bytes &to, std::vector<SummaryOffset> &groups) const;
 
     ByteSink &_sink;
-    ChunkBuilder _small;
-    ChunkBuilder _large{false};
+    const std::unique_ptr<ChunkBuilder> _small;
+    const std::unique_ptr<ChunkBuilder> _large;
     std::vector<KnownSchema> _schemas;    // number 1 first
     std::vector<KnownChannel> _channels;  // number 0 first
     std::vector<std::uint64_t> _counts;   // by channel

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <optional>
+#include <rabit/mcap/ByteSource.h>
+#include <rabit/mcap/McapRecords.h>
 
-#include "recording/mcap/ByteSource.h"
-#include "recording/mcap/McapRecords.h"
+#include <optional>
 
 namespace Rabit::Mcap
 {
@@ -51,7 +51,8 @@ private:
     Bytes _content;
 };
 
-// Returns the records within bytes, a chunk's for instance, one after the other.
+// Returns the records within bytes, a chunk's for instance, one after the other. The bytes must outlive the
+// iterator and the records. Not thread-safe.
 class RecordIterator
 {
 public:

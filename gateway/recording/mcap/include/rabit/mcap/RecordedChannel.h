@@ -1,8 +1,8 @@
 #pragma once
 
-#include <string>
+#include <rabit/mcap/McapContents.h>
 
-#include "recording/mcap/McapContents.h"
+#include <string>
 
 namespace Rabit::Mcap
 {
@@ -33,7 +33,8 @@ struct RecordedChannel
     std::string Recorder;
 };
 
-// Node and message of a channel of another program are those of a topic `NODE/MESSAGE`.
+// Returns the meaning of a channel by its topic and its metadata. Node and message of a
+// channel of another program are those of a topic `NODE/MESSAGE`. Keeps no state.
 RecordedChannel Describe(const Channel &channel);
 
 }  // namespace Rabit::Mcap

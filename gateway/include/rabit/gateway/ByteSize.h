@@ -8,6 +8,7 @@ namespace Rabit
 
 // Sizes in bytes, as configuration files and options of the program `rabit` give them: `64MB`, `1GB`.
 
+// The least and the most bytes that a setting takes, both included.
 struct ByteRange
 {
     std::uint64_t Least = 0;
@@ -29,8 +30,8 @@ inline constexpr ByteRange Memory{Megabyte, 64000 * Megabyte};
 }  // namespace RecordRanges
 
 // Returns the bytes of a number with a unit: B, kB, MB, GB or TB, powers of 1000. A number without a unit is
-// refused because its unit would be a guess; 0 needs none. Throws std::invalid_argument with what is
-// expected.
+// refused because its unit would be a guess; 0 needs none. Any other text, or a size outside of the range,
+// throws std::invalid_argument with what is expected. Any thread may call it.
 std::uint64_t ParseByteSize(const std::string &text, const ByteRange &range);
 
 }  // namespace Rabit

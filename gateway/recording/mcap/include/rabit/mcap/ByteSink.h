@@ -1,11 +1,12 @@
 #pragma once
 
-#include "recording/mcap/McapRecords.h"
+#include <rabit/mcap/McapRecords.h>
 
 namespace Rabit::Mcap
 {
 
-// Takes the bytes of a file, one after the other.
+// Takes the bytes of a file, one after the other. The program implements it: over a file, or in memory. A
+// writer calls it on its own thread alone.
 class ByteSink
 {
 public:

@@ -15,12 +15,13 @@ namespace Rabit
 // index of a word is its profile.
 inline const std::vector<std::string> QosProfileWords = {"state", "telemetry"};
 
+// Returns the word of a profile. A number that is no QosProfile throws std::out_of_range.
 inline const std::string &WordOf(QosProfile profile)
 {
     return QosProfileWords.at(static_cast<std::size_t>(profile));
 }
 
-// Empty for another word.
+// Returns the profile of a word; empty for any other text.
 inline std::optional<QosProfile> ProfileOf(const std::string &word)
 {
     const auto found = std::find(QosProfileWords.begin(), QosProfileWords.end(), word);

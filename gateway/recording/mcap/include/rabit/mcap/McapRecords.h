@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
-// The records of an MCAP file, as https://mcap.dev/spec has them. Times are nanoseconds since 1970 (UTC).
+// The records of an MCAP file, as https://mcap.dev/spec has them: plain values. Times are nanoseconds since
+// 1970 (UTC), sizes and offsets are bytes. A ByteView points into bytes that somebody else owns: the function
+// that returns it says how long it is valid.
 namespace Rabit::Mcap
 {
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <rabit/mcap/ByteSource.h>
+#include <rabit/mcap/McapRecords.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -7,9 +10,6 @@
 #include <string>
 #include <utility>
 #include <vector>
-
-#include "recording/mcap/ByteSource.h"
-#include "recording/mcap/McapRecords.h"
 
 namespace Rabit::Mcap
 {
@@ -23,7 +23,7 @@ struct ContentsLimits
     std::size_t Indexes = 256U << 20;
 };
 
-// The contents of a file, without the messages themselves.
+// The contents of a file, without the messages themselves. It holds no reference to the file.
 struct Contents
 {
     Contents() = default;
@@ -58,8 +58,9 @@ private:
     ContentsLimits _limits;  // what is left of them
 };
 
-// Reads the contents from the summary, or from all of the file if it has no whole summary. No bytes make it
-// throw. A file that is no MCAP file has no contents, and a problem.
+// Reads the contents from the summary, or from all of the file if it has no whole summary. These functions
+// keep no state: several threads may read different sources. No bytes make them throw. A file that is no MCAP
+// file has no contents, and a problem.
 Contents ReadContents(ByteSource &source, const ContentsLimits &limits = {});
 // Reads the contents from all of the file, whatever its summary says.
 Contents ScanContents(ByteSource &source, const ContentsLimits &limits = {});
