@@ -74,7 +74,7 @@ TEST(BaseExample, FieldsAreReadFromUntrustedBytes)
     EXPECT_EQ(whole.Varint(1000), count);
     EXPECT_EQ(whole.Fixed<std::uint32_t>(), 7u);
     EXPECT_EQ(whole.Name(), name);
-    EXPECT_TRUE(whole.IsGood() && whole.Left() == 0);
+    EXPECT_TRUE(whole.IsAtEnd());
 
     // The count is too large here, so nothing behind it is read.
     Rabit::WireReader refused(bytes);

@@ -90,15 +90,7 @@ std::optional<std::uint64_t> AgreementHub::FenceOf(std::string_view claim) const
 std::vector<std::string> AgreementHub::Mine() const
 {
     const std::lock_guard lock(_mutex);
-    std::vector<std::string> mine;
-    if (_node)
-    {
-        for (const auto &[claim, holding] : _node->Own().Held(_clock->Monotonic()))
-        {
-            mine.push_back(claim);
-        }
-    }
-    return mine;
+    return _node ? _node->Own().Held(_clock->Monotonic()) : std::vector<std::string>();
 }
 
 Claims::Status AgreementHub::StatusOf(std::string_view claim) const
@@ -199,9 +191,9 @@ std::vector<OwnClaims::Event> AgreementHub::TakeEvents()
     return std::exchange(_events, {});
 }
 
-std::string_view AgreementHub::Write(const std::function<TableCopy::Answer(TableCopy &)> &change)
+std::string_view AgreementHub::Write(const std::function<std::string_view(TableCopy &)> &change)
 {
-    TableCopy::Answer answer = TableCopy::Answer::Done;
+    std::string_view answer;
     {
         const std::lock_guard lock(_tableMutex);
         if (!_table)
@@ -211,7 +203,7 @@ std::string_view AgreementHub::Write(const std::function<TableCopy::Answer(Table
         answer = change(*_table);
     }
     TellTable();
-    return answer == TableCopy::Answer::Done ? std::string_view() : TableCopy::Reason(answer);
+    return answer;
 }
 
 std::optional<TableValue> AgreementHub::ValueOf(std::string_view key) const

@@ -40,7 +40,7 @@ public:
 
     // For SharedTable. Calls change(table), and tells the change. Returns why it was refused; empty: it is
     // done.
-    std::string_view Write(const std::function<TableCopy::Answer(TableCopy &)> &change);
+    std::string_view Write(const std::function<std::string_view(TableCopy &)> &change);
     // The value of a key; empty: it is not known.
     std::optional<TableValue> ValueOf(std::string_view key) const;
     std::vector<std::string> Keys() const;

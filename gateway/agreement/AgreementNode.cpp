@@ -64,8 +64,9 @@ void AgreementNode::OnDatagram(std::string_view from, std::span<const std::uint8
 std::optional<ClaimReply> AgreementNode::Vote(std::string_view from, const ClaimRequest &request,
                                               Duration now)
 {
-    auto reply = _ballots.OnRequest(from, request, now);
-    if (_ballots.LastIgnored() == ClaimBallots::Ignored::NotStored)
+    bool waits = false;
+    auto reply = _ballots.OnRequest(from, request, now, &waits);
+    if (waits)
     {
         _unstored.insert_or_assign(std::string(from), request);
     }

@@ -89,7 +89,6 @@ public:
     void OnBeat(std::string_view from, std::uint64_t incarnation, const Beat &beat, Duration now);
 
     std::uint64_t Malformed() const { return _malformed; }
-    const AgreementSettings &Settings() const { return _settings; }
 
 private:
     // Answers that wait to be sent. Of more, the oldest is dropped: its claimant asks again.

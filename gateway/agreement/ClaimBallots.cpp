@@ -16,21 +16,10 @@ ClaimBallots::ClaimBallots(const AgreementSettings &settings, std::uint64_t fenc
 }
 
 std::optional<ClaimReply> ClaimBallots::OnRequest(std::string_view from, const ClaimRequest &request,
-                                                  Duration now)
+                                                  Duration now, bool *waits)
 {
-    _ignored = Ignored::Nothing;
     EndBooks(now);
-    if (!_settings.IsMember(from))
-    {
-        _ignored = Ignored::NoMember;
-        return std::nullopt;
-    }
-    if (request.Group != _group)
-    {
-        _ignored = Ignored::OtherGroup;
-        return std::nullopt;
-    }
-    if (Abstains(now))
+    if (!_settings.IsMember(from) || request.Group != _group || now < _votesFrom)
     {
         return std::nullopt;
     }
@@ -56,7 +45,10 @@ std::optional<ClaimReply> ClaimBallots::OnRequest(std::string_view from, const C
     {
         if (MustStore(request))
         {
-            _ignored = Ignored::NotStored;
+            if (waits != nullptr)
+            {
+                *waits = true;
+            }
             return std::nullopt;
         }
         book.Number = request.Number;
@@ -105,14 +97,12 @@ ClaimBallots::Books::iterator ClaimBallots::BookOf(std::string_view from, const 
         }
         if (age > asks)
         {
-            _ignored = Ignored::FormerLife;
             return _books.end();
         }
         ++others;
     }
     if (others >= MostBooksOfOne)
     {
-        _ignored = Ignored::TooMany;
         return _books.end();
     }
     _firstEnd = std::min(_firstEnd, now + _settings.VotersLease());

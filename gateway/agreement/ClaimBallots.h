@@ -42,24 +42,15 @@ public:
     // member that leaps again and again needs 16 million requests to use all fences up.
     static constexpr std::uint64_t LargestLeap = std::uint64_t{1} << 40;
 
-    // Why a request was not answered, besides abstention.
-    enum class Ignored : std::uint8_t
-    {
-        Nothing,
-        NoMember,    // the claimant is not in the list
-        OtherGroup,  // its list or its lease is another one
-        FormerLife,  // a later incarnation or session of the claimant is known
-        TooMany,     // its name has too many books
-        NotStored    // it has a fence that must be stored first: take it again after Stored
-    };
-
     // The settings must outlive the object. `fences`: all up to this one may have been accepted. `now`:
     // abstains for VotersLease from here on.
     ClaimBallots(const AgreementSettings &settings, std::uint64_t fences, Duration now);
 
-    // Returns the answer. Empty: this voter says nothing, and LastIgnored tells why.
-    std::optional<ClaimReply> OnRequest(std::string_view from, const ClaimRequest &request, Duration now);
-    Ignored LastIgnored() const { return _ignored; }
+    // Returns the answer. Empty: this voter says nothing. It abstains, or the claimant is not in the list,
+    // has another list or lease, is a former life of one that is known, or has too many books. Or `waits`:
+    // the request has a fence that must be stored first, and is to be taken again after Stored.
+    std::optional<ClaimReply> OnRequest(std::string_view from, const ClaimRequest &request, Duration now,
+                                        bool *waits = nullptr);
 
     // The fence that must be stored; empty: none must.
     std::optional<std::uint64_t> StoreWanted() const
@@ -75,8 +66,6 @@ public:
 
     // Another live node has this node's name.
     void NameIsTaken(Duration now) { _votesFrom = now + _settings.VotersLease(); }
-    // True if it does not vote now.
-    bool Abstains(Duration now) const { return now < _votesFrom; }
 
     // The holder of a claim, as far as this voter knows: others may have granted it to another one.
     struct Holding
@@ -86,7 +75,6 @@ public:
         Duration Until{0};        // if it is not renewed
     };
     std::optional<Holding> HolderOf(std::string_view claim, Duration now) const;
-    std::uint64_t Fences() const { return _fences; }
 
 private:
     struct Book
@@ -128,7 +116,6 @@ private:
     Books _books;
     Grants _grants;
     Duration _firstEnd = Duration::max();  // no book ends before
-    Ignored _ignored = Ignored::Nothing;
 };
 
 }  // namespace Rabit

@@ -69,8 +69,7 @@ ClaimLease::Duration ClaimLease::LateAfter() const
 ClaimRequest ClaimLease::OrdersTo(std::string_view voter, Duration now)
 {
     ClaimRequest request = NewRequest(now);
-    const auto known = _voters.find(voter);
-    request.Book = known == _voters.end() ? 0 : known->second.Book;
+    request.Book = Of(voter).Book;
     request.Number = ++_number;
     return request;
 }
@@ -122,18 +121,6 @@ ClaimLease::Answer ClaimLease::Take(std::string_view from, const ClaimReply &rep
         }
     }
     return told == known ? Answer::OfKnownBook : Answer::OfNewBook;
-}
-
-bool ClaimLease::KnowsBookOf(std::string_view voter) const
-{
-    const auto known = _voters.find(voter);
-    return known != _voters.end() && known->second.Book != 0;
-}
-
-ClaimLease::Duration ClaimLease::UntilOf(std::string_view voter) const
-{
-    const auto known = _voters.find(voter);
-    return known == _voters.end() ? Duration(0) : known->second.Until;
 }
 
 ClaimLease::Duration ClaimLease::UntilOf(const std::vector<std::string_view> &voters) const

@@ -36,7 +36,7 @@ public:
         OfNewBook  // the voter has no grants of this session
     };
 
-    // The settings must outlive the object.
+    // The settings must outlive the object. Functions for a voter that is no member throw std::out_of_range.
     explicit ClaimLease(const AgreementSettings &settings);
 
     // Renewals go from now on. Without effect if they go already.
@@ -57,9 +57,9 @@ public:
     // its incarnation falls over a restart.
     Answer Take(std::string_view from, const ClaimReply &reply, Duration now);
     std::uint32_t Session() const { return _session; }
-    bool KnowsBookOf(std::string_view voter) const;
+    bool KnowsBookOf(std::string_view voter) const { return Of(voter).Book != 0; }
     // The end of the lease that this voter acknowledged; 0: of none.
-    Duration UntilOf(std::string_view voter) const;
+    Duration UntilOf(std::string_view voter) const { return Of(voter).Until; }
     // The end of the lease that a majority acknowledged, of these voters alone; 0: they are no majority.
     Duration UntilOf(const std::vector<std::string_view> &voters) const;
 
@@ -74,6 +74,7 @@ private:
         Duration Until{0};
     };
 
+    const Voter &Of(std::string_view voter) const { return _voters.at(std::string(voter)); }
     ClaimRequest NewRequest(Duration now);
     // From then on, less than half of a lease is left of what a majority acknowledged; with beats somewhat
     // less.

@@ -1,10 +1,10 @@
 #include "agreement/ClaimMessages.h"
 
 #include <rabit/base/LittleEndian.h>
+#include <rabit/base/WireBytes.h>
 
 #include <utility>
 
-#include "agreement/AgreementBytes.h"
 #include "agreement/AgreementSettings.h"
 
 namespace Rabit
@@ -63,51 +63,51 @@ std::vector<std::uint8_t> EncodeClaimReply(const ClaimReply &reply)
 
 std::optional<ClaimRequest> DecodeClaimRequest(std::span<const std::uint8_t> bytes)
 {
-    AgreementBytes from(bytes);
-    if (from.Take<std::uint8_t>() != RequestByte)
+    WireReader from(bytes);
+    if (from.Byte() != RequestByte)
     {
         return std::nullopt;
     }
     ClaimRequest request;
-    request.Group = from.Take<std::uint64_t>();
-    request.Incarnation = from.Take<std::uint64_t>();
-    request.Session = from.Take<std::uint32_t>();
-    request.Renewal = from.Take<std::uint32_t>();
-    request.Book = from.Take<std::uint64_t>();
-    request.Number = from.Take<std::uint32_t>();
-    request.Orders.resize(from.Count(ClaimRequest::MostOrders));
+    request.Group = from.Fixed<std::uint64_t>();
+    request.Incarnation = from.Fixed<std::uint64_t>();
+    request.Session = from.Fixed<std::uint32_t>();
+    request.Renewal = from.Fixed<std::uint32_t>();
+    request.Book = from.Fixed<std::uint64_t>();
+    request.Number = from.Fixed<std::uint32_t>();
+    request.Orders.resize(from.Byte(ClaimRequest::MostOrders));
     for (ClaimOrder &order : request.Orders)
     {
-        order.What = from.TakeKind(ClaimOrder::Kind::Release);
-        order.Fence = from.Take<std::uint64_t>();
-        order.Name = from.FilledName(AgreementSettings::LongestName);
+        order.What = from.Enumerator(ClaimOrder::Kind::Release);
+        order.Fence = from.Fixed<std::uint64_t>();
+        order.Name = from.Name(1, AgreementSettings::LongestName);
     }
     return from.IsAtEnd() ? std::optional(std::move(request)) : std::nullopt;
 }
 
 std::optional<ClaimReply> DecodeClaimReply(std::span<const std::uint8_t> bytes)
 {
-    AgreementBytes from(bytes);
-    if (from.Take<std::uint8_t>() != ReplyByte)
+    WireReader from(bytes);
+    if (from.Byte() != ReplyByte)
     {
         return std::nullopt;
     }
     ClaimReply reply;
-    reply.Group = from.Take<std::uint64_t>();
-    reply.Incarnation = from.Take<std::uint64_t>();
-    reply.Claimant = from.Take<std::uint64_t>();
-    reply.Session = from.Take<std::uint32_t>();
-    reply.Book = from.Take<std::uint64_t>();
-    reply.Renewal = from.Take<std::uint32_t>();
-    reply.Number = from.Take<std::uint32_t>();
-    reply.Fences = from.Take<std::uint64_t>();
-    reply.Results.resize(from.Count(ClaimRequest::MostOrders));
+    reply.Group = from.Fixed<std::uint64_t>();
+    reply.Incarnation = from.Fixed<std::uint64_t>();
+    reply.Claimant = from.Fixed<std::uint64_t>();
+    reply.Session = from.Fixed<std::uint32_t>();
+    reply.Book = from.Fixed<std::uint64_t>();
+    reply.Renewal = from.Fixed<std::uint32_t>();
+    reply.Number = from.Fixed<std::uint32_t>();
+    reply.Fences = from.Fixed<std::uint64_t>();
+    reply.Results.resize(from.Byte(ClaimRequest::MostOrders));
     for (ClaimResult &result : reply.Results)
     {
-        result.What = from.TakeKind(ClaimResult::Kind::Refused);
-        result.Milliseconds = from.Take<std::uint32_t>();
-        result.Name = from.FilledName(AgreementSettings::LongestName);
-        result.Holder = from.Name(LongestNode);
+        result.What = from.Enumerator(ClaimResult::Kind::Refused);
+        result.Milliseconds = from.Fixed<std::uint32_t>();
+        result.Name = from.Name(1, AgreementSettings::LongestName);
+        result.Holder = from.Name(0, LongestNode);
     }
     return from.IsAtEnd() ? std::optional(std::move(reply)) : std::nullopt;
 }

@@ -60,11 +60,7 @@ void ClaimVotes::AskRefusedAgain()
 
 void ClaimVotes::ForgetBookOf(std::string_view voter)
 {
-    const auto vote = _votes.find(voter);
-    if (vote != _votes.end())
-    {
-        vote->second = Vote();
-    }
+    Of(voter) = Vote();
 }
 
 void ClaimVotes::ForgetAll()
@@ -77,12 +73,7 @@ void ClaimVotes::ForgetAll()
 
 std::optional<ClaimOrder> ClaimVotes::OrderTo(std::string_view voter) const
 {
-    const auto found = _votes.find(voter);
-    if (found == _votes.end())
-    {
-        return std::nullopt;
-    }
-    const Vote &vote = found->second;
+    const Vote &vote = Of(voter);
     if (_aim == Aim::Release)
     {
         return vote.WasAsked ? std::optional(ClaimOrder{.What = ClaimOrder::Kind::Release, .Name = _claim})
@@ -101,31 +92,25 @@ std::optional<ClaimOrder> ClaimVotes::OrderTo(std::string_view voter) const
 
 bool ClaimVotes::IsUnsent(std::string_view voter) const
 {
-    const auto found = _votes.find(voter);
-    return found != _votes.end() && found->second.Since == 0 && OrderTo(voter).has_value();
+    return Of(voter).Since == 0 && OrderTo(voter).has_value();
 }
 
 void ClaimVotes::Sent(std::string_view voter, std::uint32_t number)
 {
-    const auto found = _votes.find(voter);
-    if (found != _votes.end())
-    {
-        Vote &vote = found->second;
-        vote.Since = vote.Since == 0 ? number : vote.Since;
-        vote.WasAsked = true;
-    }
+    Vote &vote = Of(voter);
+    vote.Since = vote.Since == 0 ? number : vote.Since;
+    vote.WasAsked = true;
 }
 
 bool ClaimVotes::Take(std::string_view voter, std::uint32_t number, std::uint64_t fences,
                       const ClaimResult &result)
 {
-    const auto found = _votes.find(voter);
+    Vote &vote = Of(voter);
     // An answer to an earlier order says nothing of the present one.
-    if (found == _votes.end() || found->second.Since == 0 || number < found->second.Since)
+    if (vote.Since == 0 || number < vote.Since)
     {
         return false;
     }
-    Vote &vote = found->second;
     vote.Since = 0;
     switch (result.What)
     {
@@ -164,38 +149,6 @@ bool ClaimVotes::TakeGrant(Vote &vote, std::uint64_t fences)
         }
     }
     return true;
-}
-
-std::size_t ClaimVotes::Count(Kind kind) const
-{
-    return static_cast<std::size_t>(std::count_if(
-        _votes.begin(), _votes.end(), [kind](const auto &vote) { return vote.second.What == kind; }));
-}
-
-std::vector<std::string_view> ClaimVotes::VotersThat(Kind kind) const
-{
-    std::vector<std::string_view> voters;
-    for (const auto &[name, vote] : _votes)
-    {
-        if (vote.What == kind)
-        {
-            voters.push_back(name);
-        }
-    }
-    return voters;
-}
-
-std::vector<std::string_view> ClaimVotes::VotersThatWereAsked() const
-{
-    std::vector<std::string_view> voters;
-    for (const auto &[name, vote] : _votes)
-    {
-        if (vote.WasAsked)
-        {
-            voters.push_back(name);
-        }
-    }
-    return voters;
 }
 
 ClaimVotes::Refusal ClaimVotes::LongestRefusal() const

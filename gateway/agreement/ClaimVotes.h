@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -39,6 +38,7 @@ public:
         std::chrono::milliseconds Wait{0};
     };
 
+    // Voters of later calls must be among these; else they throw std::out_of_range.
     ClaimVotes(std::string claim, const std::vector<std::string> &voters);
 
     // Asks all voters, from the beginning. A voter that has granted the claim before is asked, too.
@@ -65,10 +65,16 @@ public:
     bool Take(std::string_view voter, std::uint32_t number, std::uint64_t fences, const ClaimResult &result);
 
     std::uint64_t Fence() const { return _fence; }
-    std::size_t Count(Kind kind) const;
-    std::vector<std::string_view> VotersThat(Kind kind) const;
+    std::size_t Count(Kind kind) const { return VotersThat(kind).size(); }
+    std::vector<std::string_view> VotersThat(Kind kind) const
+    {
+        return VotersWith([kind](const Vote &vote) { return vote.What == kind; });
+    }
     // Voters that may have granted the claim to this node.
-    std::vector<std::string_view> VotersThatWereAsked() const;
+    std::vector<std::string_view> VotersThatWereAsked() const
+    {
+        return VotersWith([](const Vote &vote) { return vote.WasAsked; });
+    }
     // The longest of all refusals.
     Refusal LongestRefusal() const;
 
@@ -92,13 +98,28 @@ private:
         std::string Holder{};
     };
 
+    const Vote &Of(std::string_view voter) const { return _votes.at(std::string(voter)); }
+    Vote &Of(std::string_view voter) { return _votes.at(std::string(voter)); }
     void Aims(Aim aim);
     bool TakeGrant(Vote &vote, std::uint64_t fences);
+    template <typename Is>
+    std::vector<std::string_view> VotersWith(const Is &is) const
+    {
+        std::vector<std::string_view> voters;
+        for (const auto &[name, vote] : _votes)
+        {
+            if (is(vote))
+            {
+                voters.push_back(name);
+            }
+        }
+        return voters;
+    }
 
     const std::string _claim;
     Aim _aim = Aim::Release;
     std::uint64_t _fence = 0;
-    std::map<std::string, Vote, std::less<>> _votes;
+    std::map<std::string, Vote> _votes;
 };
 
 }  // namespace Rabit

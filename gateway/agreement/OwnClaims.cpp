@@ -81,34 +81,25 @@ bool OwnClaims::Lacks(Duration now) const
 {
     return std::any_of(_claims.begin(), _claims.end(),
                        [this, now](const auto &claim)
-                       { return IsWanted(claim.second) && !HoldingOf(claim.first, now); });
-}
-
-std::optional<OwnClaims::Holding> OwnClaims::HoldingOf(std::string_view claim, Duration now) const
-{
-    const auto known = _claims.find(claim);
-    if (known == _claims.end() || known->second.Now != Phase::Held)
-    {
-        return std::nullopt;
-    }
-    const Duration until = HeldUntil(known->second);
-    return now < until ? std::optional(Holding{known->second.Votes.Fence(), until}) : std::nullopt;
+                       { return IsWanted(claim.second) && !FenceOf(claim.first, now); });
 }
 
 std::optional<std::uint64_t> OwnClaims::FenceOf(std::string_view claim, Duration now) const
 {
-    const std::optional<Holding> holding = HoldingOf(claim, now);
-    return holding ? std::optional(holding->Fence) : std::nullopt;
+    const auto known = _claims.find(claim);
+    const bool isHeld =
+        known != _claims.end() && known->second.Now == Phase::Held && now < HeldUntil(known->second);
+    return isHeld ? std::optional(known->second.Votes.Fence()) : std::nullopt;
 }
 
-std::map<std::string, OwnClaims::Holding, std::less<>> OwnClaims::Held(Duration now) const
+std::vector<std::string> OwnClaims::Held(Duration now) const
 {
-    std::map<std::string, Holding, std::less<>> held;
+    std::vector<std::string> held;
     for (const auto &[name, claim] : _claims)
     {
-        if (const std::optional<Holding> holding = HoldingOf(name, now))
+        if (FenceOf(name, now))
         {
-            held.emplace(name, *holding);
+            held.push_back(name);
         }
     }
     return held;

@@ -76,16 +76,8 @@ public:
     // True if a claim is wanted and not held.
     bool Lacks(Duration now) const;
 
-    struct Holding
-    {
-        std::uint64_t Fence = 0;
-        Duration Until{0};
-    };
-    // A claim that is held, and when its lease ends if it is not renewed; empty: it is not held.
-    std::optional<Holding> HoldingOf(std::string_view claim, Duration now) const;
-    // All claims that are held.
-    std::map<std::string, Holding, std::less<>> Held(Duration now) const;
-    bool IsMine(std::string_view claim, Duration now) const { return HoldingOf(claim, now).has_value(); }
+    // The claims that are held.
+    std::vector<std::string> Held(Duration now) const;
     // The fence of a claim that is held; empty: it is not.
     std::optional<std::uint64_t> FenceOf(std::string_view claim, Duration now) const;
     std::vector<Event> TakeEvents() { return std::exchange(_events, {}); }

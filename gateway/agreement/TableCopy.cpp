@@ -29,6 +29,11 @@ std::uint64_t HashOfEntry(const TableEntry &entry)
     return Fnv1a().Add(bytes).Sum();
 }
 
+std::uint32_t Salted(std::uint64_t hash, std::uint32_t salt)
+{
+    return Fnv1a().AddNumber(salt).AddNumber(hash).Folded();
+}
+
 }  // namespace
 
 TableCopy::TableCopy(std::string self, std::uint64_t incarnation)
@@ -36,27 +41,7 @@ TableCopy::TableCopy(std::string self, std::uint64_t incarnation)
 {
 }
 
-std::string_view TableCopy::Reason(Answer answer)
-{
-    switch (answer)
-    {
-        case Answer::Done:
-            return "done";
-        case Answer::BadKey:
-            return "a key needs 1 to 64 bytes";
-        case Answer::BadValue:
-            return "a value has at most 64 bytes, and a number of a set is 0 to 511";
-        case Answer::OtherMerge:
-            return "the key has a value of another merge";
-        case Answer::Full:
-            return "the table has 256 other keys; use fewer keys in the whole fleet";
-        case Answer::CountAtEnd:
-            return "the key has the highest count of all; use another key";
-    }
-    return "unknown";
-}
-
-TableCopy::Answer TableCopy::Write(const std::string &key, std::string value)
+std::string_view TableCopy::Write(const std::string &key, std::string value)
 {
     const auto known = _items.find(key);
     LastWritten written{.Count = _incarnation, .Writer = _self, .Value = std::move(value)};
@@ -69,7 +54,7 @@ TableCopy::Answer TableCopy::Write(const std::string &key, std::string value)
     }
     if (last != nullptr && last->Count == LastCount)
     {
-        return Refuse(Answer::CountAtEnd);
+        return Answer::CountAtEnd;
     }
     if (last != nullptr)
     {
@@ -78,7 +63,7 @@ TableCopy::Answer TableCopy::Write(const std::string &key, std::string value)
     TableEntry own;
     own.Key = key;
     own.Value = std::move(written);
-    const Answer answer = Merge(own, true);
+    const std::string_view answer = Merge(own, true);
     if (answer == Answer::Done)
     {
         Item &item = _items.find(key)->second;
@@ -88,12 +73,12 @@ TableCopy::Answer TableCopy::Write(const std::string &key, std::string value)
     return answer;
 }
 
-TableCopy::Answer TableCopy::Add(const std::string &key, std::size_t number)
+std::string_view TableCopy::Add(const std::string &key, std::size_t number)
 {
     NumberSet numbers;
     if (number >= numbers.size())
     {
-        return Refuse(Answer::BadValue);
+        return Answer::BadValue;
     }
     numbers.set(number);
     TableEntry own;
@@ -102,7 +87,7 @@ TableCopy::Answer TableCopy::Add(const std::string &key, std::size_t number)
     return Merge(own, true);
 }
 
-TableCopy::Answer TableCopy::Raise(const std::string &key, std::int64_t number)
+std::string_view TableCopy::Raise(const std::string &key, std::int64_t number)
 {
     TableEntry own;
     own.Key = key;
@@ -126,12 +111,24 @@ std::vector<TableEntry> TableCopy::Entries() const
     return entries;
 }
 
-std::vector<TableEntry> TableCopy::EntriesOf(std::uint64_t keyHash) const
+std::vector<std::uint32_t> TableCopy::Hashes(std::uint32_t salt) const
 {
+    std::vector<std::uint32_t> hashes;
+    for (const auto &[key, item] : _items)
+    {
+        hashes.push_back(Salted(item.Hash, salt));
+    }
+    return hashes;
+}
+
+std::vector<TableEntry> TableCopy::EntriesBeside(const std::vector<std::uint32_t> &hashes,
+                                                 std::uint32_t salt) const
+{
+    const std::set<std::uint32_t> known(hashes.begin(), hashes.end());
     std::vector<TableEntry> entries;
     for (const auto &[key, item] : _items)
     {
-        if (item.KeyHash == keyHash)
+        if (!known.contains(Salted(item.Hash, salt)))
         {
             entries.push_back(item.Entry);
         }
@@ -139,17 +136,11 @@ std::vector<TableEntry> TableCopy::EntriesOf(std::uint64_t keyHash) const
     return entries;
 }
 
-TableCopy::Answer TableCopy::Refuse(Answer reason)
-{
-    ++_refused;
-    return reason;
-}
-
-TableCopy::Answer TableCopy::Merge(const TableEntry &entry, bool isOwn)
+std::string_view TableCopy::Merge(const TableEntry &entry, bool isOwn)
 {
     if (!HasGoodKey(entry) || !HasGoodValue(entry))
     {
-        return Refuse(HasGoodKey(entry) ? Answer::BadValue : Answer::BadKey);
+        return HasGoodKey(entry) ? Answer::BadValue : Answer::BadKey;
     }
     const auto known = _items.find(entry.Key);
     if (known == _items.end())
@@ -161,10 +152,10 @@ TableCopy::Answer TableCopy::Merge(const TableEntry &entry, bool isOwn)
     {
         if (isOwn)
         {
-            return Refuse(Answer::OtherMerge);
+            return Answer::OtherMerge;
         }
         // To refuse would leave two tables apart for ever.
-        ++_conflicts[entry.Key];
+        _conflicts.insert(entry.Key);
     }
     TableValue merged = MergedTableValue(item.Entry.Value, entry.Value);
     if (merged != item.Entry.Value)
@@ -175,15 +166,15 @@ TableCopy::Answer TableCopy::Merge(const TableEntry &entry, bool isOwn)
     return Answer::Done;
 }
 
-TableCopy::Answer TableCopy::Insert(const TableEntry &entry)
+std::string_view TableCopy::Insert(const TableEntry &entry)
 {
     if (_items.size() >= MostKeys)
     {
-        return Refuse(Answer::Full);
+        _wasFull = true;
+        return Answer::Full;
     }
     Item &item = _items[entry.Key];
     item.Entry.Key = entry.Key;
-    item.KeyHash = Fnv1a().Add(entry.Key).Sum();
     Change(item, entry.Value);
     return Answer::Done;
 }
@@ -191,13 +182,11 @@ TableCopy::Answer TableCopy::Insert(const TableEntry &entry)
 void TableCopy::Change(Item &item, TableValue value)
 {
     item.Entry.Value = std::move(value);
-    const std::uint64_t hash = HashOfEntry(item.Entry);
-    _summary[item.KeyHash] += hash - item.Hash;
-    item.Hash = hash;
+    item.Hash = HashOfEntry(item.Entry);
     Fnv1a digest;
-    for (const auto &[key, entries] : _summary)
+    for (const auto &[key, each] : _items)
     {
-        digest.AddNumber(key).AddNumber(entries);
+        digest.AddNumber(each.Hash);
     }
     _digest = digest.Sum();
     _changed.insert(item.Entry.Key);

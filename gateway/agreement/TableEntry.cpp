@@ -1,8 +1,10 @@
 #include "agreement/TableEntry.h"
 
 #include <rabit/base/LittleEndian.h>
+#include <rabit/base/WireBytes.h>
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 namespace Rabit
@@ -26,7 +28,7 @@ std::string BitmapOf(const NumberSet &numbers)
 }
 
 // The bitmap must have at most 64 bytes.
-NumberSet NumbersIn(const std::string &bitmap)
+NumberSet NumbersIn(std::string_view bitmap)
 {
     NumberSet numbers;
     for (std::size_t number = 0; number < bitmap.size() * 8; ++number)
@@ -90,26 +92,26 @@ void PutTableEntry(const TableEntry &entry, std::vector<std::uint8_t> &bytes)
     }
 }
 
-TableEntry TakeTableEntry(AgreementBytes &from)
+TableEntry TakeTableEntry(WireReader &from)
 {
-    const TableMerge merge = from.TakeKind(TableMerge::Maximum);
+    const TableMerge merge = from.Enumerator(TableMerge::Maximum);
     TableEntry entry;
-    entry.Key = from.FilledName(TableEntry::LongestKey);
+    entry.Key = from.Name(1, TableEntry::LongestKey);
     switch (merge)
     {
         case TableMerge::LastWriter:
         {
             LastWritten &written = entry.Value.emplace<LastWritten>();
-            written.Count = from.Take<std::uint64_t>();
-            written.Writer = from.FilledName(TableEntry::LongestWriter);
-            written.Value = from.Name(TableEntry::LongestValue);
+            written.Count = from.Fixed<std::uint64_t>();
+            written.Writer = from.Name(1, TableEntry::LongestWriter);
+            written.Value = from.Name(0, TableEntry::LongestValue);
             break;
         }
         case TableMerge::Union:
-            entry.Value.emplace<NumberSet>(NumbersIn(from.Name(NumberSet().size() / 8)));
+            entry.Value.emplace<NumberSet>(NumbersIn(from.Name(0, NumberSet().size() / 8)));
             break;
         case TableMerge::Maximum:
-            entry.Value.emplace<std::int64_t>(static_cast<std::int64_t>(from.Take<std::uint64_t>()));
+            entry.Value.emplace<std::int64_t>(static_cast<std::int64_t>(from.Fixed<std::uint64_t>()));
             break;
     }
     return entry;

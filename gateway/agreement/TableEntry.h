@@ -7,6 +7,8 @@
 //   maximum:     number (8)
 #pragma once
 
+#include <rabit/base/WireBytes.h>
+
 #include <bitset>
 #include <compare>
 #include <cstddef>
@@ -14,8 +16,6 @@
 #include <string>
 #include <variant>
 #include <vector>
-
-#include "agreement/AgreementBytes.h"
 
 namespace Rabit
 {
@@ -66,6 +66,6 @@ bool HasGoodValue(const TableEntry &entry);
 // Writes a good entry.
 void PutTableEntry(const TableEntry &entry, std::vector<std::uint8_t> &bytes);
 // Returns a good entry, or leaves `from` bad.
-TableEntry TakeTableEntry(AgreementBytes &from);
+TableEntry TakeTableEntry(WireReader &from);
 
 }  // namespace Rabit

@@ -1,10 +1,10 @@
 #include "agreement/TableMessages.h"
 
 #include <rabit/base/LittleEndian.h>
+#include <rabit/base/WireBytes.h>
 
+#include <algorithm>
 #include <utility>
-
-#include "agreement/AgreementBytes.h"
 
 namespace Rabit
 {
@@ -12,56 +12,20 @@ namespace
 {
 
 constexpr std::uint8_t TableSummaryByte = 3;
-constexpr std::uint8_t TableRequestByte = 4;
-constexpr std::uint8_t TableEntriesByte = 5;
+constexpr std::uint8_t TableEntriesByte = 4;
 constexpr std::size_t LongestEntriesDatagram = 1200;
-constexpr std::uint8_t MostEntriesOfADatagram = 255;
+constexpr std::uint8_t MostEntriesOfADatagram = 255;  // their number is a byte
 
 }  // namespace
 
-std::vector<TableSummary> TableSummariesOf(const std::map<std::uint64_t, std::uint64_t> &pairs,
-                                           std::size_t room)
-{
-    std::vector<TableSummary> parts(1);
-    parts.front().Room = static_cast<std::uint16_t>(room);
-    for (const auto &pair : pairs)
-    {
-        if (parts.back().Pairs.size() >= TableSummary::MostPairs)
-        {
-            TableSummary next;
-            next.Part = static_cast<std::uint8_t>(parts.size());
-            next.Room = parts.front().Room;
-            next.First = pair.first;
-            parts.back().Last = pair.first - 1;
-            parts.push_back(std::move(next));
-        }
-        parts.back().Pairs.insert(pair);
-    }
-    return parts;
-}
-
 std::vector<std::uint8_t> EncodeTableSummary(const TableSummary &summary)
 {
-    using LittleEndian::Put;
-    std::vector<std::uint8_t> bytes{TableSummaryByte, summary.Part};
-    Put(summary.Room, bytes);
-    Put(summary.First, bytes);
-    Put(summary.Last, bytes);
-    bytes.push_back(static_cast<std::uint8_t>(summary.Pairs.size()));
-    for (const auto &[key, entries] : summary.Pairs)
+    std::vector<std::uint8_t> bytes{TableSummaryByte};
+    LittleEndian::Put(summary.Salt, bytes);
+    LittleEndian::Put(static_cast<std::uint16_t>(summary.Hashes.size()), bytes);
+    for (const std::uint32_t hash : summary.Hashes)
     {
-        Put(key, bytes);
-        Put(entries, bytes);
-    }
-    return bytes;
-}
-
-std::vector<std::uint8_t> EncodeTableRequest(const TableRequest &request)
-{
-    std::vector<std::uint8_t> bytes{TableRequestByte, static_cast<std::uint8_t>(request.Keys.size())};
-    for (const std::uint64_t key : request.Keys)
-    {
-        LittleEndian::Put(key, bytes);
+        LittleEndian::Put(hash, bytes);
     }
     return bytes;
 }
@@ -88,48 +52,30 @@ std::vector<std::vector<std::uint8_t>> EncodeTableEntries(std::span<const TableE
 
 std::optional<TableSummary> DecodeTableSummary(std::span<const std::uint8_t> bytes)
 {
-    AgreementBytes from(bytes);
-    if (from.Take<std::uint8_t>() != TableSummaryByte)
+    WireReader from(bytes);
+    if (from.Byte() != TableSummaryByte)
     {
         return std::nullopt;
     }
-    TableSummary summary;
-    summary.Part = static_cast<std::uint8_t>(from.Count(TableSummary::MostParts - 1));
-    summary.Room = from.Take<std::uint16_t>();
-    summary.First = from.Take<std::uint64_t>();
-    summary.Last = from.Take<std::uint64_t>();
-    for (std::size_t left = from.Count(TableSummary::MostPairs); left > 0; --left)
+    TableSummary summary{.Salt = from.Fixed<std::uint32_t>()};
+    const std::size_t count = from.Fixed<std::uint16_t>();
+    summary.Hashes.resize(std::min(count, TableSummary::MostHashes));
+    for (std::uint32_t &hash : summary.Hashes)
     {
-        const auto key = from.Take<std::uint64_t>();
-        summary.Pairs[key] = from.Take<std::uint64_t>();
+        hash = from.Fixed<std::uint32_t>();
     }
-    return from.IsAtEnd() ? std::optional(std::move(summary)) : std::nullopt;
-}
-
-std::optional<TableRequest> DecodeTableRequest(std::span<const std::uint8_t> bytes)
-{
-    AgreementBytes from(bytes);
-    if (from.Take<std::uint8_t>() != TableRequestByte)
-    {
-        return std::nullopt;
-    }
-    TableRequest request;
-    request.Keys.resize(from.Count(TableRequest::MostKeys));
-    for (std::uint64_t &key : request.Keys)
-    {
-        key = from.Take<std::uint64_t>();
-    }
-    return from.IsAtEnd() ? std::optional(std::move(request)) : std::nullopt;
+    const bool isWhole = from.IsAtEnd() && summary.Hashes.size() == count;
+    return isWhole ? std::optional(std::move(summary)) : std::nullopt;
 }
 
 std::optional<std::vector<TableEntry>> DecodeTableEntries(std::span<const std::uint8_t> bytes)
 {
-    AgreementBytes from(bytes);
-    if (from.Take<std::uint8_t>() != TableEntriesByte)
+    WireReader from(bytes);
+    if (from.Byte() != TableEntriesByte)
     {
         return std::nullopt;
     }
-    std::vector<TableEntry> entries(from.Count(MostEntriesOfADatagram));
+    std::vector<TableEntry> entries(from.Byte());
     for (TableEntry &entry : entries)
     {
         entry = TakeTableEntry(from);

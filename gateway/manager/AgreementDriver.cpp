@@ -5,9 +5,11 @@
 #include <rabit/gateway/ConfigError.h>
 
 #include <algorithm>
+#include <limits>
 #include <random>
 #include <utility>
 
+#include "incarnation/StoredNumber.h"
 #include "wire/BeatFormat.h"
 
 namespace Rabit
@@ -15,7 +17,7 @@ namespace Rabit
 namespace
 {
 
-// Datagrams of claims begin with 1 and 2, those of tables with 3 to 5.
+// Datagrams of claims begin with 1 and 2, those of tables with 3 and 4.
 constexpr std::uint8_t LastOfClaims = 2;
 
 const std::string AgreementSubject = "claims and shared tables";
@@ -51,7 +53,7 @@ AgreementDriver::AgreementDriver(const GatewayConfig &config, const RabitClock &
               woken->store(true);
               wake();
           }),
-      _fences(std::move(fences), (incarnation >> 32) * FenceFile::FencesOfASecond),
+      _fences(std::move(fences)),
       _settings(AgreementSettingsOf(config, incarnation)),
       _group(Fnv1a(_settings.Group()).Folded()),
       // Without Claims in the program, the node votes and passes the table on.
@@ -62,7 +64,10 @@ AgreementDriver::AgreementDriver(const GatewayConfig &config, const RabitClock &
 
 TableCopy &AgreementDriver::OpenedTable(const GatewayConfig &config, const RandomSource &random)
 {
-    if (!_hub->Open(_settings, _fences.Load(), _clock, OwnRandom(random), _wake))
+    const std::uint64_t stored =
+        StoredNumber::Read(_fences, std::numeric_limits<std::uint64_t>::max() / 2, "fence", _fenceError);
+    const std::uint64_t fences = std::max(stored, (_settings.Incarnation >> 32) * FencesOfASecond);
+    if (!_hub->Open(_settings, fences, _clock, OwnRandom(random), _wake))
     {
         throw ConfigError(config.File, config.Agreement->Line,
                           "another gateway serves the claims of this configuration; expected a "
@@ -150,7 +155,6 @@ void AgreementDriver::OnBeat(const Presence::Served::Agreement &told)
     {
         return;
     }
-    _groups[told.Node] = told.News.Group;
     if (told.News.Group == _group)
     {
         _hub->With(
@@ -171,22 +175,15 @@ void AgreementDriver::LookAt(const PeersOverPaths &peers)
     {
         return;
     }
+    _exchange.ForgetUnless([this](const std::string &node) { return _network.GroupOf(node).has_value(); });
     std::size_t up = 0;
     std::size_t early = 0;
-    for (auto known = _groups.begin(); known != _groups.end();)
+    for (const PeerTable::Peer *const peer : peers.Heard())
     {
-        const PeerTable::Peer *const peer = peers.Find(known->first);
-        if (peer == nullptr || peer->State == Gateway::NodeState::LOST)
-        {
-            _exchange.Forget(known->first);
-            known = _groups.erase(known);
-            continue;
-        }
         // Nodes that are silent tell nothing of this node's clock.
-        const bool isUp = peer->State == Gateway::NodeState::UP;
+        const bool isUp = peer->Agreement && peer->State == Gateway::NodeState::UP;
         up += isUp ? 1U : 0U;
         early += isUp && peer->Clock.StoodStillHere() ? 1U : 0U;
-        ++known;
     }
     // One node's beats may come early since a queue on their way has emptied.
     const bool stoodStill = 2 * early > up;
@@ -232,27 +229,6 @@ std::optional<AgreementDriver::Duration> AgreementDriver::NextDue(Duration now)
                                _exchange.IsWaiting() ? std::optional(now + TablePace) : std::nullopt});
 }
 
-void AgreementDriver::Tell(Duration now)
-{
-    const std::vector<OwnClaims::Event> events = _hub->TakeEvents();
-    for (const OwnClaims::Event &event : events)
-    {
-        if (event.What == OwnClaims::Event::Kind::Lost)
-        {
-            _recent.Note({"claim " + event.Claim, "",
-                          "lost under fence " + std::to_string(event.Fence) +
-                              ": its lease has ended, since no majority of the members has answered in time; "
-                              "work that began under it may still run"},
-                         now);
-        }
-    }
-    if (!events.empty())
-    {
-        _hub->TellClaims();
-    }
-    _hub->TellTable();
-}
-
 void AgreementDriver::TakeInbox()
 {
     std::vector<std::pair<std::string, std::vector<std::uint8_t>>> inbox;
@@ -269,7 +245,7 @@ void AgreementDriver::TakeInbox()
             _hub->With([&from = node, &bytes = datagram](AgreementNode &member, Duration now)
                        { member.OnDatagram(from, bytes, now); });
         }
-        else if (_groups.contains(node))
+        else if (_network.GroupOf(node))
         {
             _hub->WithTable([&, &from = node, &bytes = datagram](const TableCopy & /*table*/)
                             { _exchange.OnDatagram(from, bytes, _clock.Monotonic()); });
@@ -290,10 +266,9 @@ void AgreementDriver::Send(const AgreementNode::Datagram &datagram)
 {
     for (const std::string &member : _settings.Members)
     {
-        const auto group = _groups.find(member);
         const bool isMeant = datagram.To.empty() || datagram.To == member;
         // Others do not hear this node, or take it for a node with another list.
-        if (isMeant && group != _groups.end() && group->second == _group)
+        if (isMeant && _network.GroupOf(member) == _group)
         {
             SendTo(member, datagram.Bytes);
         }
@@ -323,7 +298,8 @@ bool AgreementDriver::StoreFences()
     {
         return false;
     }
-    const bool isStored = _fences.Store(*upTo);
+    _fenceError = _fences.empty() ? "" : StoredNumber::Write(_fences, *upTo);
+    const bool isStored = _fenceError.empty();
     _storeAt = _clock.Monotonic() + (isStored ? Duration(0) : StoreAgainAfter);
     _hub->With([&](AgreementNode &node, Duration now) { node.Stored(*upTo, isStored, now); });
     return true;
@@ -336,38 +312,6 @@ void AgreementDriver::SendTo(const std::string &node, const std::vector<std::uin
     _network.Send(node, frame);
 }
 
-void AgreementDriver::NoteTable(Duration now)
-{
-    std::uint64_t refused = 0;
-    bool isFull = false;
-    std::map<std::string, std::uint64_t> conflicts;
-    _hub->WithTable(
-        [&](const TableCopy &table)
-        {
-            refused = table.Refused();
-            isFull = table.Room() == 0;
-            conflicts = table.Conflicts();
-        });
-    if (std::exchange(_refused, refused) != refused && isFull)
-    {
-        _recent.Note({"table", "",
-                      "it has " + std::to_string(TableCopy::MostKeys) +
-                          " keys, and further ones are refused: use fewer keys in the whole fleet"},
-                     now);
-    }
-    for (const auto &[key, times] : conflicts)
-    {
-        if (_conflicts[key] != times)
-        {
-            _recent.Note({"table " + key, "",
-                          "nodes use this key in two ways, and a value was lost: give each key one of "
-                          "Write, Add and Raise"},
-                         now);
-        }
-    }
-    _conflicts = std::move(conflicts);
-}
-
 void AgreementDriver::Leave()
 {
     const RabitHandlerThread::Scope scope(_handlers, AgreementSubject, _hub);
@@ -377,73 +321,6 @@ void AgreementDriver::Leave()
         Send(datagram);
     }
     _hub->TellClaims();
-}
-
-std::size_t AgreementDriver::Answering() const
-{
-    const std::vector<std::string> &members = _settings.Members;
-    return 1 + static_cast<std::size_t>(std::count_if(members.begin(), members.end(),
-                                                      [this](const std::string &member)
-                                                      {
-                                                          const auto group = _groups.find(member);
-                                                          return group != _groups.end() &&
-                                                                 group->second == _group;
-                                                      }));
-}
-
-std::vector<Gateway::Problem> AgreementDriver::Problems(const PeersOverPaths &peers, Duration now)
-{
-    if (_hasLeft)
-    {
-        return {};
-    }
-    NoteTable(now);
-    std::vector<Gateway::Problem> problems = _recent.Problems(now);
-    for (const PeerTable::Peer *const peer : peers.Heard())
-    {
-        if (peer->State == Gateway::NodeState::LOST)
-        {
-            continue;
-        }
-        if (!peer->Agreement && _settings.IsMember(peer->Node))
-        {
-            problems.push_back({"agreement " + peer->Node, peer->Node,
-                                "it is one of the `members` here and has no `agreement` itself, so it does "
-                                "not vote"});
-        }
-        else if (peer->Agreement && peer->Agreement->Group != _group)
-        {
-            problems.push_back({"agreement " + peer->Node, peer->Node,
-                                "its `members` or its `lease` are others than those of this node: the two do "
-                                "not vote for each other, and their claims do not exclude each other"});
-        }
-    }
-    const std::size_t majority = _settings.Majority();
-    const bool lacks =
-        _hub->With([](const AgreementNode &node, Duration at) { return node.Own().Lacks(at); });
-    if (Answering() < majority && lacks)
-    {
-        problems.push_back({"agreement", "",
-                            std::to_string(Answering()) + " of " + std::to_string(_settings.Members.size()) +
-                                " members are there with the same list, and a majority is " +
-                                std::to_string(majority) + ": no claim has a new holder here"});
-    }
-    if (!_fences.Error().empty())
-    {
-        problems.push_back({"agreement", "",
-                            "the fences are not stored: " + _fences.Error() +
-                                "; this node may accept no claim, and fences may fall after its next start"});
-    }
-    return problems;
-}
-
-std::uint64_t AgreementDriver::Malformed() const
-{
-    const std::uint64_t ofClaims =
-        _hasLeft ? 0
-                 : _hub->With([](const AgreementNode &node, Duration /*now*/) { return node.Malformed(); });
-    const std::lock_guard lock(_mutex);
-    return _dropped + ofClaims + _exchange.Malformed();
 }
 
 }  // namespace Rabit

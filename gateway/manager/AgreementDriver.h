@@ -24,7 +24,6 @@
 
 #include "agreement/AgreementHub.h"
 #include "agreement/AgreementNode.h"
-#include "agreement/FenceFile.h"
 #include "agreement/TableExchange.h"
 #include "gateway.idl.h"
 #include "paths/PeersOverPaths.h"
@@ -51,6 +50,8 @@ public:
         std::function<std::size_t(const std::string &node)> PathTo;
         // True if a frame of that size may go to that node now, if it is in no hurry.
         std::function<bool(const std::string &node, std::size_t bytes)> HasRoom;
+        // AgreementNews::Group as the node tells it; empty: it is not heard now, or has no agreement.
+        std::function<std::optional<std::uint32_t>(const std::string &node)> GroupOf;
     };
 
     // The first byte of frames, which is no version of the links. The datagram follows.
@@ -96,8 +97,12 @@ private:
     static constexpr Duration TablePace = std::chrono::milliseconds(5);
     // After fences could not be stored.
     static constexpr Duration StoreAgainAfter = std::chrono::seconds(1);
+    // Fences begin at so many for each second of the incarnation's counter, so they rise from start to start
+    // without a file, too, as long as fewer claims are won. A wall clock of 136 years is within
+    // ClaimBallots::LargestLeap.
+    static constexpr std::uint64_t FencesOfASecond = 256;
 
-    // Opens the hub. Throws ConfigError.
+    // Opens the hub with the highest fence that may have been accepted. Throws ConfigError.
     TableCopy &OpenedTable(const GatewayConfig &config, const RandomSource &random);
     void TakeInbox();
     void SendDue();
@@ -120,18 +125,16 @@ private:
     // Something has come since the last Serve. Shared, since a thread of the program may set it late.
     const std::shared_ptr<std::atomic<bool>> _woken = std::make_shared<std::atomic<bool>>(true);
     const std::function<void()> _wake;
-    FenceFile _fences;
-    Duration _storeAt{0};  // not before
+    const std::filesystem::path _fences;  // file of the highest fence; empty: none
+    std::string _fenceError;              // of the last read or write, in one line; empty: there was none
+    Duration _storeAt{0};                 // not before
     const AgreementSettings _settings;
     const std::uint32_t _group;
-    const std::shared_ptr<AgreementHub> _hub;                   // opened
-    TableExchange _exchange;                                    // of the hub's table
-    std::map<std::string, std::uint32_t, std::less<>> _groups;  // of the nodes that are heard
+    const std::shared_ptr<AgreementHub> _hub;  // opened
+    TableExchange _exchange;                   // of the hub's table
     Duration _due{0};
     bool _stoodStill = false;
     bool _hasLeft = false;
-    std::uint64_t _refused = 0;  // by the table
-    std::map<std::string, std::uint64_t> _conflicts;
     RecentProblems _recent;
 
     mutable std::mutex _mutex;

@@ -218,19 +218,25 @@ std::unique_ptr<AgreementDriver> GatewayManager::Parts::MakeAgreement(const Rand
     return std::make_unique<AgreementDriver>(
         config, _workspace.GetClock(), _incarnation, std::move(fences), random, _manager.WakeUpHandler(),
         Handlers(),
-        AgreementDriver::Network{.Send =
-                                     [this](const std::string &node, std::span<const std::uint8_t> frame)
-                                 {
-                                     const std::size_t path = _choice.Of(node);
-                                     _links.SendOther(path, node, frame);
-                                     _paths[path]->SentPast();
-                                 },
-                                 .PathTo = [this](const std::string &node) { return _choice.Of(node); },
-                                 .HasRoom =
-                                     [this](const std::string &node, std::size_t bytes) {
-                                         return _paths[_choice.Of(node)]->MayTakeCopy(
-                                             node, "", bytes + LinkDriver::AboutTheHeaders);
-                                     }});
+        AgreementDriver::Network{
+            .Send =
+                [this](const std::string &node, std::span<const std::uint8_t> frame)
+            {
+                const std::size_t path = _choice.Of(node);
+                _links.SendOther(path, node, frame);
+                _paths[path]->SentPast();
+            },
+            .PathTo = [this](const std::string &node) { return _choice.Of(node); },
+            .HasRoom = [this](const std::string &node, std::size_t bytes)
+            { return _paths[_choice.Of(node)]->MayTakeCopy(node, "", bytes + LinkDriver::AboutTheHeaders); },
+            .GroupOf =
+                [this](const std::string &node)
+            {
+                const PeerTable::Peer *const peer = _peers->Find(node);
+                const bool isHeard =
+                    peer != nullptr && peer->Agreement && peer->State != Gateway::NodeState::LOST;
+                return isHeard ? std::optional(peer->Agreement->Group) : std::nullopt;
+            }});
 }
 
 void GatewayManager::Parts::TakeAgreements(const Presence::Served &served)

@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -95,7 +96,9 @@ protected:
         {.Send = [this](const std::string &node, std::span<const std::uint8_t> frame)
          { sent.emplace_back(node, std::vector<std::uint8_t>(frame.begin() + 1, frame.end())); },
          .PathTo = [](const std::string &node) { return node == "uav3" ? std::size_t{1} : std::size_t{0}; },
-         .HasRoom = [this](const std::string & /*node*/, std::size_t /*bytes*/) { return hasRoom; }}};
+         .HasRoom = [this](const std::string & /*node*/, std::size_t /*bytes*/) { return hasRoom; },
+         .GroupOf = [this](const std::string & /*node*/)
+         { return std::optional(Fnv1a(settings.Group()).Folded()); }}};
 };
 
 // Else another one could get the claim while its holder counts the lease from when it sent the renewal.

@@ -20,7 +20,7 @@ ROOMS = {
     "names": [],
     "clocks": [],
     "incarnation": ["links"],
-    "agreement": ["incarnation"],
+    "agreement": [],
     "wire": ["names", "links"],
     "configuration": ["air", "names", "wire"],
     "types": ["names", "wire"],

@@ -393,7 +393,7 @@ bool Decode(std::span<const std::uint8_t> bytes, LinkFrame &frame)
     {
         Get(reader, frame.Data);
     }
-    return reader.IsGood() && reader.Left() == 0;
+    return reader.IsAtEnd();
 }
 
 }  // namespace Rabit::LinkFrameCodec

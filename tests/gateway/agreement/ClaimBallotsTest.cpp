@@ -60,7 +60,6 @@ TEST_F(Ballots, AnswerNobodyWhileTheirNameIsTaken)
 TEST_F(Ballots, IgnoreClaimantsThatAreNotInTheList)
 {
     EXPECT_FALSE(_ballots.OnRequest("uav9", RequestOf(1, 1), _now));
-    EXPECT_EQ(_ballots.LastIgnored(), ClaimBallots::Ignored::NoMember);
 }
 
 TEST_F(Ballots, IgnoreClaimantsWithAnotherList)
@@ -68,7 +67,6 @@ TEST_F(Ballots, IgnoreClaimantsWithAnotherList)
     ClaimRequest request = RequestOf(1, 1);
     ++request.Group;
     EXPECT_FALSE(_ballots.OnRequest("uav1", request, _now));
-    EXPECT_EQ(_ballots.LastIgnored(), ClaimBallots::Ignored::OtherGroup);
 }
 
 TEST_F(Ballots, GrantAClaimToOne)
@@ -129,14 +127,13 @@ TEST_F(Ballots, IgnoreAFormerLife)
 {
     _ballots.OnRequest("uav1", RequestOf(2, 1), _now);
     EXPECT_FALSE(_ballots.OnRequest("uav1", RequestOf(1, 1), _now));
-    EXPECT_EQ(_ballots.LastIgnored(), ClaimBallots::Ignored::FormerLife);
 }
 
 TEST_F(Ballots, AcceptNoFenceWithoutAGrant)
 {
-    EXPECT_EQ(Order("uav1", ClaimOrder::Kind::Accept, "cell", 7).Results.at(0).What,
-              ClaimResult::Kind::Refused);
-    EXPECT_EQ(_ballots.Fences(), 0U);
+    const ClaimReply reply = Order("uav1", ClaimOrder::Kind::Accept, "cell", 7);
+    EXPECT_EQ(reply.Results.at(0).What, ClaimResult::Kind::Refused);
+    EXPECT_EQ(reply.Fences, 0U);
 }
 
 TEST_F(Ballots, StoreAFenceBeforeItIsUsed)
@@ -144,8 +141,9 @@ TEST_F(Ballots, StoreAFenceBeforeItIsUsed)
     Order("uav1", ClaimOrder::Kind::Ask, "cell");
     EXPECT_FALSE(_ballots.StoreWanted());
     EXPECT_THAT(Order("uav1", ClaimOrder::Kind::Accept, "cell", 7).Results, IsEmpty());
-    EXPECT_EQ(_ballots.LastIgnored(), ClaimBallots::Ignored::NotStored);
-    EXPECT_EQ(_ballots.Fences(), 0U);
+    bool waits = false;
+    EXPECT_FALSE(_ballots.OnRequest("uav1", _last, _now, &waits));
+    EXPECT_TRUE(waits);
     const auto upTo = _ballots.StoreWanted();
     ASSERT_TRUE(upTo);
     EXPECT_GE(*upTo, 7U);
@@ -153,7 +151,7 @@ TEST_F(Ballots, StoreAFenceBeforeItIsUsed)
     const auto reply = _ballots.OnRequest("uav1", _last, _now);
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->Results.at(0).What, ClaimResult::Kind::Accepted);
-    EXPECT_EQ(_ballots.Fences(), 7U);
+    EXPECT_EQ(reply->Fences, 7U);
     EXPECT_FALSE(_ballots.StoreWanted());
 }
 

@@ -159,7 +159,7 @@ public:
         std::vector<std::string> holders;
         for (const auto &[name, member] : _members)
         {
-            if (member.Node && member.Node->Own().IsMine(claim, Local(member)))
+            if (member.Node && member.Node->Own().FenceOf(claim, Local(member)))
             {
                 holders.push_back(name);
             }

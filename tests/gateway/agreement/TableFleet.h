@@ -182,7 +182,8 @@ private:
                 const auto heard = to.HeardAt.find(packet.From);
                 if (heard != to.HeardAt.end() && _now - heard->second > LostAfter)
                 {
-                    to.Exchange->Forget(packet.From);
+                    to.Exchange->ForgetUnless([&packet](const std::string &peer)
+                                              { return peer != packet.From; });
                 }
                 to.HeardAt[packet.From] = _now;
                 to.Exchange->OnDigest(packet.From, *packet.Digest, _now);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace Rabit
 {
@@ -20,6 +21,13 @@ inline std::size_t VarintSize(std::uint64_t value)
         ++size;
     }
     return size;
+}
+
+// Appends a name as WireWriter::Name writes it. At most 255 bytes.
+inline void PutName(std::string_view name, std::vector<std::uint8_t> &bytes)
+{
+    bytes.push_back(static_cast<std::uint8_t>(name.size()));
+    bytes.insert(bytes.end(), name.begin(), name.end());
 }
 
 // Writes fields one behind the other: numbers of a fixed size little-endian, varints in groups of seven bits
@@ -77,11 +85,26 @@ public:
     void Fail() { _good = false; }
     // Number of bytes that were not read.
     std::size_t Left() const { return _left.size(); }
+    // True if all bytes were read, and all values are good.
+    bool IsAtEnd() const { return _good && _left.empty(); }
 
     std::uint8_t Byte()
     {
         const std::span<const std::uint8_t> read = Bytes(1);
         return read.empty() ? std::uint8_t{0} : read[0];
+    }
+    // A byte that must not be above `most`.
+    std::uint8_t Byte(std::size_t most)
+    {
+        const std::uint8_t value = Byte();
+        _good = _good && value <= most;
+        return _good ? value : std::uint8_t{0};
+    }
+    // A value of an enumeration, in a byte that must not be above `last`.
+    template <typename Enumeration>
+    Enumeration Enumerator(Enumeration last)
+    {
+        return static_cast<Enumeration>(Byte(static_cast<std::size_t>(last)));
     }
     std::uint64_t Varint()
     {
@@ -128,6 +151,13 @@ public:
     {
         const std::span<const std::uint8_t> bytes = Bytes(Byte());
         return {reinterpret_cast<const char *>(bytes.data()), bytes.size()};
+    }
+    // A name that must have `least` to `most` bytes.
+    std::string_view Name(std::size_t least, std::size_t most)
+    {
+        const std::string_view name = Name();
+        _good = _good && name.size() >= least && name.size() <= most;
+        return _good ? name : std::string_view();
     }
 
 private:
