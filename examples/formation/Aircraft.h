@@ -4,12 +4,15 @@
 #include "Rules.h"
 
 #include <rabit/RabitManager.h>
-#include <rabit/gateway/Fleet.h>
+#include <rabit/gateway/Claims.h>
 #include <rabit/gateway/FleetValues.h>
+#include <rabit/gateway/SharedTable.h>
 
+#include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
-#include <utility>
 
 namespace Formation
 {
@@ -40,27 +43,32 @@ private:
     std::shared_ptr<Pose> _pose = std::make_shared<Pose>();
 };
 
-// Keeps the place in the formation, 10 times a second: fetches Leader and the poses of all, posts Wish.
+// Keeps the place in the formation, 10 times a second: fetches the poses of all, posts Wish.
 class Keeper : public Rabit::RabitManager
 {
 public:
-    Keeper(std::string node, const Settings &settings, Rabit::RabitWorkspace &workspace)
-        : RabitManager("Keeper", workspace), _node(std::move(node)), _settings(settings)
+    Keeper(const Settings &settings, Rabit::GatewayConfig &config, Rabit::RabitWorkspace &workspace)
+        : RabitManager("Keeper", workspace),
+          _node(config.Node),
+          _settings(settings),
+          _claims(config),
+          _table(config)
     {
         AddPublishSubscribeMessage("Pose", _pose);
-        AddPublishSubscribeMessage("Leader", _leader);
         AddPublishSubscribeMessage("Wish", _wish);
         SetPeriodSec(0.1);
     }
     void ExecuteUnitOfWork() final
     {
         _pose->FetchMessage();
-        _leader->FetchMessage();
         _poses.Fetch();
         std::map<std::string, Other> others;
         for (const auto &[node, pose] : _poses.All())
             others[node] = {*pose, pose->GetAgeSeconds()};
-        const Vector wanted = Decide(_node, *_pose, *_leader, others, _settings);
+        // This aircraft leads only while it holds the claim; of others it knows what it has heard.
+        const Leader leader{_claims.IsLeader() ? _node : _claims.Leader(),
+                            GoalOf(_table.Text("goal").value_or(""))};
+        const Vector wanted = Decide(_node, *_pose, leader, others, _settings);
         _wish->north_mps = wanted.real();
         _wish->east_mps = wanted.imag();
         _wish->PostMessage();
@@ -69,68 +77,55 @@ public:
 private:
     const std::string _node;
     const Settings _settings;
+    Rabit::Claims _claims;
+    Rabit::SharedTable _table;
     Rabit::FleetValues<Pose> _poses{*this, "Pose"};
     std::shared_ptr<Pose> _pose = std::make_shared<Pose>();
-    std::shared_ptr<Leader> _leader = std::make_shared<Leader>();
     std::shared_ptr<Pose> _wish = std::make_shared<Pose>();
 };
 
-// Posts Leader: of the aircraft that are UP, the one whose name comes first. Takes Lead in its queue.
-class Election : public Rabit::RabitManager
+// Asks for the lead, which at most one aircraft has. Takes Lead in its queue while it leads. The goal is in
+// the shared table, so that the next leader knows it.
+class Leadership : public Rabit::RabitManager
 {
 public:
-    Election(std::string node, Rabit::RabitWorkspace &workspace)
-        : RabitManager("Election", workspace), _node(std::move(node))
+    Leadership(Rabit::GatewayConfig &config, Rabit::RabitWorkspace &workspace)
+        : RabitManager("Leadership", workspace), _claims(config), _table(config)
     {
-        AddPublishSubscribeMessage("Gateway/Fleet", _fleet);
-        AddPublishSubscribeMessage("Leader", _leader);
-        WakeUpManagerOnMessagePost(_fleet);
+        SetPeriodSec(0.2);
+        SetWakeupBetweenTurns(true);  // orders are handled at once
+        _claims.BeLeader();
     }
     void ExecuteUnitOfWork() final
     {
-        _fleet->FetchMessage();
-        _leaders.Fetch();
-        Leader now = *_leader;
-        now.node = _node;
-        for (const auto &node : _fleet->nodes)
-            if (node.state == Rabit::Gateway::NodeState::UP && _leaders.Of(node.node) && node.node < now.node)
-                now.node = node.node;
-        // The goal of the leader is that of all, so that the next leader knows it.
-        if (const Leader *const led = _leaders.Of(now.node); led && led->node == now.node)
-            now = *led;
-        TakeOrders(now);
-        if (now.node != _leader->node)
-            WriteLog(Rabit::RabitLogLevel::Info, now.node + " leads");
-        if (now == *_leader)
+        TakeOrders();
+        const std::string leader = _claims.Leader();
+        if (leader == _leader)
             return;
-        *_leader = now;
-        _leader->PostMessage();
+        WriteLog(Rabit::RabitLogLevel::Info,
+                 leader.empty() ? "no leader: this aircraft holds its position" : leader + " leads");
+        _leader = leader;
     }
 
 private:
-    void TakeOrders(Leader &now)
+    void TakeOrders()
     {
         std::shared_ptr<Rabit::RabitMessage> message;
         while (GetManagerMessageQueue()->GetMessage(message))
             if (const auto *const lead = dynamic_cast<const Lead *>(message.get()))
             {
-                if (now.node == _node)
-                {
-                    now.has_goal = true;
-                    now.north_m = lead->north_m;
-                    now.east_m = lead->east_m;
-                }
+                const std::optional<std::uint64_t> fence = _claims.FenceOf(Rabit::Claims::Leadership);
                 auto reply = std::make_shared<LeadReply>();
                 reply->id = lead->id;
-                reply->leader = now.node;
+                if (fence && _table.Write("goal", TextOf({lead->north_m, lead->east_m})).empty())
+                    reply->fence = *fence;
                 AddMessageToQueue(lead->reply_to, reply);
             }
     }
 
-    const std::string _node;
-    Rabit::FleetValues<Leader> _leaders{*this, "Leader", Rabit::FleetValues<Leader>::Wake::OnEach};
-    std::shared_ptr<Rabit::Gateway::Fleet> _fleet = std::make_shared<Rabit::Gateway::Fleet>();
-    std::shared_ptr<Leader> _leader = std::make_shared<Leader>();
+    Rabit::Claims _claims;
+    Rabit::SharedTable _table;
+    std::string _leader;  // of which it has told; empty: none
 };
 
 }  // namespace Formation

@@ -5,13 +5,17 @@
 
 #include <rabit/RabitManager.h>
 #include <rabit/RabitRequests.h>
+#include <rabit/gateway/Claims.h>
 #include <rabit/gateway/FleetValues.h>
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <iostream>
 #include <limits>
 #include <memory>
+#include <string>
 
 namespace Formation
 {
@@ -20,14 +24,15 @@ namespace Formation
 class Director : public Rabit::RabitManager
 {
 public:
-    Director(int aircraft, double legM, double spacingM, Rabit::RabitWorkspace &workspace,
-             std::ostream &out = std::cout)
+    Director(int aircraft, double legM, double spacingM, Rabit::GatewayConfig &config,
+             Rabit::RabitWorkspace &workspace, std::ostream &out = std::cout)
         : RabitManager("Director", workspace),
           _aircraft(aircraft),
           _legM(legM),
           _spacingM(spacingM),
           _goal(legM),
-          _out(out)
+          _out(out),
+          _claims(config)
     {
         SetPeriodSec(0.2);
         SetWakeupBetweenTurns(true);  // replies are handled at once
@@ -38,11 +43,14 @@ public:
         if (!IsTurn())
             return;
         LookForCollisions();
-        const std::string leader = LeaderOfAll();
+        const std::string leader = LeaderThatIsHeard();
         if (leader.empty())
             return;
         if (leader != _leader)
+        {
             _out << "leader " << (_leader = leader) << std::endl;
+            _accepted = false;  // the former leader may have told nobody of its goal
+        }
         if (_accepted && std::abs(PlaceOf(*_poses.Of(leader)) - SlotOf(leader, _spacingM) - _goal) < 2)
         {
             _out << "reached " << _goal.real() << " m, closest " << _closestM << " m" << std::endl;
@@ -51,7 +59,7 @@ public:
             _accepted = false;
         }
         if (!_accepted && _requests.NumberOfOpen() == 0)
-            Send(leader + "/Election");
+            Send(leader + "/Leadership");
     }
 
 private:
@@ -72,25 +80,20 @@ private:
                 _requests.Take(reply->id, reply);
         for (const auto &request : _requests.TakeEnded())
         {
-            _accepted = request.Answer && request.Answer->leader + "/Election" == request.Queue;
+            // 0: declined. A former leader has a lower fence than a later one.
+            const std::uint64_t fence = request.Answer ? request.Answer->fence : 0;
+            _accepted = request.Queue == _leader + "/Leadership" && fence > 0 && fence >= _fence;
+            _fence = std::max(_fence, fence);
             _out << request.Queue << ": " << (_accepted ? "accepted" : ToString(request.End)) << std::endl;
         }
     }
-    // The one that all follow that are heard; empty while they do not agree, or did not all come yet.
-    std::string LeaderOfAll()
+    // Empty while there is none, it is not heard, or not all aircraft have come yet.
+    std::string LeaderThatIsHeard()
     {
-        _leaders.Fetch();
         const auto heard = _poses.YoungerThan(1);
         _aircraft = heard.size() >= static_cast<std::size_t>(_aircraft) ? 0 : _aircraft;
-        std::string leader;
-        for (const auto &[node, pose] : heard)
-        {
-            const Leader *const said = _leaders.Of(node);
-            if (!said || (!leader.empty() && said->node != leader))
-                return "";
-            leader = said->node;
-        }
-        return _aircraft == 0 && heard.count(leader) == 1 ? leader : "";
+        const std::string leader = _claims.Leader();
+        return _aircraft == 0 && heard.contains(leader) ? leader : "";
     }
     void LookForCollisions()
     {
@@ -107,10 +110,11 @@ private:
     const double _spacingM;
     Vector _goal;
     std::ostream &_out;
+    Rabit::Claims _claims;
     Rabit::FleetValues<Pose> _poses{*this, "Pose"};
-    Rabit::FleetValues<Leader> _leaders{*this, "Leader"};
     Rabit::RabitRequests<LeadReply> _requests{*this, std::chrono::seconds(3)};
     std::string _leader;
+    std::uint64_t _fence = 0;  // the highest one of a leader
     bool _accepted = false;
     double _closestM = std::numeric_limits<double>::infinity();  // of two aircraft, on the way to this goal
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <sstream>
 
 namespace Formation
 {
@@ -27,6 +28,20 @@ Vector SlotOf(const std::string &node, double spacingM)
     return {-row, number % 2 == 0 ? -row : row};
 }
 
+std::string TextOf(Vector goal)
+{
+    std::ostringstream text;
+    text << goal;
+    return text.str();
+}
+
+std::optional<Vector> GoalOf(const std::string &text)
+{
+    std::istringstream in(text);
+    Vector goal;
+    return in >> goal ? std::optional(goal) : std::nullopt;
+}
+
 Vector Decide(const std::string &self, const Pose &own, const Leader &leader,
               const std::map<std::string, Other> &others, const Settings &settings)
 {
@@ -35,12 +50,11 @@ Vector Decide(const std::string &self, const Pose &own, const Leader &leader,
         if (other.AgeS > settings.OldS && other.AgeS < settings.GoneS)
             return wanted;
     const Vector here = PlaceOf(own);
-    if (leader.node == self && leader.has_goal)
-        wanted = Limited(Vector{leader.north_m, leader.east_m} + SlotOf(self, settings.SpacingM) - here,
-                         settings.CruiseMps);
-    if (const auto led = others.find(leader.node); led != others.end() && led->second.AgeS <= settings.OldS)
+    if (leader.Node == self && leader.Goal)
+        wanted = Limited(*leader.Goal + SlotOf(self, settings.SpacingM) - here, settings.CruiseMps);
+    if (const auto led = others.find(leader.Node); led != others.end() && led->second.AgeS <= settings.OldS)
     {
-        const Vector apart = SlotOf(self, settings.SpacingM) - SlotOf(leader.node, settings.SpacingM);
+        const Vector apart = SlotOf(self, settings.SpacingM) - SlotOf(leader.Node, settings.SpacingM);
         const Pose &pose = led->second.Last;
         wanted = Vector{pose.north_mps, pose.east_mps} + Gain * (PlaceOf(pose) + apart - here);
     }

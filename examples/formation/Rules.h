@@ -5,6 +5,7 @@
 
 #include <complex>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace Formation
@@ -24,6 +25,13 @@ struct Other
     double AgeS = 0;
 };
 
+// The leader as an aircraft knows it.
+struct Leader
+{
+    std::string Node{};            // empty: there is none
+    std::optional<Vector> Goal{};  // of the leader; empty: it stays where it is
+};
+
 inline Vector PlaceOf(const Pose &pose)
 {
     return {pose.north_m, pose.east_m};
@@ -31,9 +39,12 @@ inline Vector PlaceOf(const Pose &pose)
 // The place of an aircraft in the V. It depends on the number in the name alone, so that no aircraft changes
 // place when another one leads.
 Vector SlotOf(const std::string &node, double spacingM);
+// A goal as a text in the shared table. A text that is no goal gives none.
+std::string TextOf(Vector goal);
+std::optional<Vector> GoalOf(const std::string &text);
 // The velocity that the aircraft should have now. The leader flies to its place at the goal, the others to
-// their places beside the leader. So one that is cut off, and leads itself, ends in its place as well. All
-// give way to an aircraft that is too close.
+// their places beside the leader. Without a leader all hold their positions. All give way to an aircraft that
+// is too close.
 Vector Decide(const std::string &self, const Pose &own, const Leader &leader,
               const std::map<std::string, Other> &others, const Settings &settings);
 // Moves the aircraft for that time towards the wanted velocity.

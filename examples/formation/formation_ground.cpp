@@ -15,7 +15,7 @@ int main(int argc, char **argv)
         config.Parameters.Read("aircraft", aircraft, 1, 100);
         config.Parameters.Read("leg_m", legM, 10, 10'000);
         config.Parameters.Read("spacing_m", settings.SpacingM, 5, 200);
-        reactor.AddManager(std::make_unique<Formation::Director>(aircraft, legM, settings.SpacingM,
+        reactor.AddManager(std::make_unique<Formation::Director>(aircraft, legM, settings.SpacingM, config,
                                                                  *Rabit::RabitWorkspace::GetWorkspace()));
     };
     return Rabit::RunNode(argc, argv, program);

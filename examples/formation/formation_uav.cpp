@@ -6,7 +6,7 @@
 
 int main(int argc, char **argv)
 {
-    Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Info);  // Election tells who leads
+    Rabit::RabitLog::SetLevel(Rabit::RabitLogLevel::Info);  // Leadership tells which aircraft leads
     Rabit::NodeProgram program;
     program.ConfigFile = "formation_uav.yaml";
     program.AddManagers = [](Rabit::RabitReactor &reactor, Rabit::GatewayConfig &config)
@@ -16,8 +16,8 @@ int main(int argc, char **argv)
         config.Parameters.Read("cruise_mps", settings.CruiseMps, 0.5, 8);
         Rabit::RabitWorkspace &workspace = *Rabit::RabitWorkspace::GetWorkspace();
         reactor.AddManager(std::make_unique<Formation::Dynamics>(config.Node, settings, workspace));
-        reactor.AddManager(std::make_unique<Formation::Keeper>(config.Node, settings, workspace));
-        reactor.AddManager(std::make_unique<Formation::Election>(config.Node, workspace));
+        reactor.AddManager(std::make_unique<Formation::Keeper>(settings, config, workspace));
+        reactor.AddManager(std::make_unique<Formation::Leadership>(config, workspace));
     };
     return Rabit::RunNode(argc, argv, program);
 }

@@ -40,20 +40,22 @@ def main():
         ground = start("formation_ground", config, "ground", transports[0])
         uavs = {name: start("formation_uav", folder / "formation_uav.yaml", name, transports[i % len(transports)])
                 for i, name in enumerate(AIRCRAFT)}
-        ground.wait_for(re.compile("^leader uav1$").search, LIMIT_S)
-
         # The ground program tells the least distance that it saw on each leg: `inf` if it saw none.
         def check_next_leg(what, since=0.0):
             when, reached = ground.wait_for(re.compile(r"^reached \S+ m, closest (\S+) m$").search, LIMIT_S, since)
             check(SAFE_M < float(reached.group(1)) < math.inf, f"no two aircraft came close {what}: {reached.group(1)} m")
             return when
         when = check_next_leg("before the leader was killed")
-        ground.wait_for(re.compile("^uav1/Election: accepted$").search, LIMIT_S, when)
-        uavs["uav1"].kill()
-        when, _ = ground.wait_for(re.compile("^leader uav2$").search, LIMIT_S)
+        when, accepted = ground.wait_for(re.compile(r"^(uav\d)/Leadership: accepted$").search, LIMIT_S, when)
+        former = accepted.group(1)
+        uavs[former].kill()
+        when, leads = ground.wait_for(re.compile(r"^leader (uav\d)$").search, LIMIT_S, when)
+        check(leads.group(1) != former, f"another aircraft than {former} leads")
         check_next_leg("on the leg on which it was killed", when)
-        uavs["uav3"].wait_for(re.compile("^uav3: info: Election: uav2 leads$").search, LIMIT_S)
-        for name in AIRCRAFT[1:]:
+        others = [name for name in AIRCRAFT if name != former]
+        told = re.compile(f": info: Leadership: {leads.group(1)} leads$")
+        uavs[others[-1]].wait_for(told.search, LIMIT_S)
+        for name in others:
             check(uavs[name].terminate() == 0, f"{name} ends in order")
         check(ground.terminate() == 0, "the ground program ends in order")
 
